@@ -1,0 +1,67 @@
+// A headset's display and optics, as its driver knows them.
+#pragma once
+
+#include "base/pose.h"
+#include "base/time.h"
+#include "interfaces/sources.h"
+
+#include <array>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+
+namespace entoptic {
+
+// Radial distortion of one colour: where light of a panel pixel comes from. Same for C++ and GLSL (see shaders/geometry.glsl).
+//   x = 2u-1-ax, y = (2v-1)/aspect - ay, r2 = x²+y², d = 1/(1 + k0 r2 + k1 r2² + k2 r2³)
+//   (X, Y) = (x d + ax, (y d + ay) aspect): normalised device coordinates of the undistorted view, times 1+grow
+// (u,v in [0,1], v down, one eye's half of the panel.) Source: facts/devices.md 1.4.
+struct ChannelDistortion {
+    glm::vec2 centre{0};          // ax, ay
+    glm::vec3 coefficients{0};    // k0, k1, k2
+};
+
+// One eye's lens. Direction seen through panel position (u,v), from (X, Y) above and the intrinsics:
+//   tan_x = (X + cx)/fx, tan_y = (cy - Y)/fy, direction = normalize(tan_x, tan_y, -1).
+// This is the file's own mapping display -> render target (U, V in [0,1] over the field of view below) written in tangents.
+struct Lens {
+    std::array<ChannelDistortion, 3> channels;   // red, green, blue
+    float aspect = 0.9f;                         // physical_aspect_x_over_y
+    float grow_for_undistort = 0.6f;
+    float r2_cutoff = 1.13f;                     // nothing is seen through the lens where r2 of green exceeds this
+    glm::vec2 focal{1.208f, 1.088f};             // fx, fy of the undistorted view, NDC per tangent
+    glm::vec2 principal_point{0};                // cx, cy
+};
+
+// Light of the panel.
+struct Photometry {
+    float white_cd_m2 = 130;    // code 255 in all channels
+    float black_cd_m2 = 0.04f;  // code 0
+    // Primaries are BT.709 / D65 and the code curve is sRGB's until measured (displays/*.toml).
+};
+
+struct DisplayIdentity {
+    std::string name;                    // "HTC Vive Pro (virtual)"
+    int panel_width = 1440, panel_height = 1600;   // pixels, one eye
+    DurationNs period = ns_per_s / 90;   // of a refresh
+    DurationNs vblank_to_photon = 0;     // from the vblank that starts scan-out to the middle of the light
+    Photometry photometry;
+};
+
+struct EyeOptics {
+    Lens lens;
+    Fov fov;                // the rectilinear view an application has to render to fill what the lens shows
+    Pose head_from_eye;     // x = -IPD/2 for the left eye
+};
+
+// Everything the runtime and the compositor need of a headset. Sources live as long as the headset.
+struct Headset {
+    DisplayIdentity display;
+    std::array<EyeOptics, 2> eyes;
+    PoseSource* head = nullptr;         // never null
+    EyeSource* eye_tracker = nullptr;   // never null; may say that it is absent
+    std::array<ControllerSource*, 2> controllers{};   // left, right; null when there is none
+    std::shared_ptr<void> owner;        // keeps the driver alive
+};
+
+}  // namespace entoptic

@@ -1,0 +1,64 @@
+// What an application submits for one frame, with everything resolved to poses, rectangles and cd/m².
+#pragma once
+
+#include "base/pose.h"
+#include "base/time.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace entoptic {
+
+constexpr int eye_count = 2;               // 0 left, 1 right
+constexpr std::uint32_t max_layers = 16;   // XrSystemGraphicsProperties::maxLayerCount
+
+// A rectangle of one array slice of one image of a swapchain. Texels, origin at the top left.
+// The runtime has checked that it lies inside the image.
+struct SubImage {
+    std::uint64_t swapchain = 0;   // FrameService's id
+    std::uint32_t image_index = 0; // of the image released last
+    std::uint32_t array_layer = 0;
+    std::int32_t x = 0, y = 0, width = 0, height = 0;   // may be zero: the layer shows nothing then
+};
+
+// How linear layer values become luminance: cd/m² = value * cd_per_unit + offset_cd, for R = G = B = value.
+// An SDR layer has cd_per_unit = panel white - panel black and offset = panel black, so that its codes come back to the bit.
+enum class LuminanceSource { default_sdr, application_profile, layer_extension, command_line };
+struct LayerLuminance {
+    float cd_per_unit = 130;
+    float offset_cd = 0;
+    LuminanceSource source = LuminanceSource::default_sdr;
+};
+
+enum class LayerKind { projection, quad };
+enum class EyeVisibility { both, left, right };
+
+struct LayerView {
+    Pose space_from_view;   // projection: pose of the eye the picture was rendered for, in the layer's space
+    Fov fov;
+    SubImage image;
+};
+
+// One composition layer. Painter's order: the first is farthest back.
+struct Layer {
+    LayerKind kind = LayerKind::projection;
+    EyeVisibility visibility = EyeVisibility::both;
+    bool blend_texture_source_alpha = false;   // else the layer is opaque
+    bool unpremultiplied_alpha = false;        // colours are not yet multiplied by alpha
+    LayerLuminance luminance;
+    bool head_locked = false;                  // the layer's space moves with the head: `anchor` is head_from_space, else world_from_space
+    Pose anchor;
+    std::array<LayerView, eye_count> views;    // projection: per eye; quad: views[0].image for both
+    Pose space_from_quad;                      // quad: its centre, facing +z, x right, y up
+    float quad_width_m = 0, quad_height_m = 0;
+};
+
+// One xrEndFrame.
+struct FrameSubmission {
+    std::uint64_t frame_id = 0;          // of the wait_frame() it answers
+    TimeNs display_time = 0;             // the application's displayTime
+    std::vector<Layer> layers;           // at most max_layers; empty shows black
+};
+
+}  // namespace entoptic
