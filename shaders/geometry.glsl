@@ -1,0 +1,101 @@
+// Directions of eye-image pixels and back; lens distortion. Compiled in float by glslang and in double by g++ (shaders/shared_types.h).
+// Pixel coordinates: x right, y down, centre of the first pixel at (0.5, 0.5). Directions: x right, y up, -z forward.
+#ifndef ENTOPTIC_SHADERS_GEOMETRY_GLSL
+#define ENTOPTIC_SHADERS_GEOMETRY_GLSL
+
+#include "shaders/eye_geometry.h"
+
+ENTOPTIC_MATH_BEGIN(geometry)
+
+// Denominator of Valve's DISTORT_DPOLY3 (facts/devices.md 1.4). Positive inside the lens.
+FN real lens_denominator(LensChannel c, real r2) {
+    return LIT(1.0) + r2 * (real(c.coefficients.x) + r2 * (real(c.coefficients.y) + r2 * real(c.coefficients.z)));
+}
+
+// Panel position in the lens's own coordinates: distance 1 is half the panel's width, origin at the colour's centre.
+FN rvec2 lens_position(EyeGeometry g, LensChannel c, rvec2 px) {
+    rvec2 uv = px / rvec2(real(g.width), real(g.height));
+    return rvec2(LIT(2.0) * uv.x - LIT(1.0) - real(c.centre.x), (LIT(2.0) * uv.y - LIT(1.0)) / real(g.aspect) - real(c.centre.y));
+}
+
+// Tangents (right, up) of the direction in which panel pixel `px` is seen in one colour.
+FN rvec2 lens_tangents(EyeGeometry g, LensChannel c, rvec2 px) {
+    rvec2 p = lens_position(g, c, px);
+    real gain = LIT(1.0) / lens_denominator(c, dot(p, p));
+    rvec2 ndc = rvec2(p.x * gain + real(c.centre.x), (p.y * gain + real(c.centre.y)) * real(g.aspect));
+    return rvec2((ndc.x + real(g.principal_point.x)) / real(g.focal.x), (real(g.principal_point.y) - ndc.y) / real(g.focal.y));
+}
+
+// Inverse of lens_tangents: where on the panel the direction (right, up) is seen in one colour.
+// Solves r = R0 (1 + k0 r² + k1 r⁴ + k2 r⁶) by Newton's method from r = R0; the k of real lenses are negative, so that the function is
+// convex and the iteration falls to the root from above. 8 steps: below 1e-7 of the panel inside the cut-off (lens_test).
+FN rvec2 lens_pixel(EyeGeometry g, LensChannel c, rvec2 tangents) {
+    rvec2 ndc = rvec2(tangents.x * real(g.focal.x) - real(g.principal_point.x), real(g.principal_point.y) - tangents.y * real(g.focal.y));
+    rvec2 q = rvec2(ndc.x - real(c.centre.x), ndc.y / real(g.aspect) - real(c.centre.y));
+    real target = length(q);
+    real r = min(target, LIT(1.5));
+    for (int i = 0; i < 8; ++i) {
+        real r2 = r * r;
+        real f = r - target * lens_denominator(c, r2);
+        real slope = LIT(1.0) - target * r * (LIT(2.0) * real(c.coefficients.x) +
+                                            r2 * (LIT(4.0) * real(c.coefficients.y) + r2 * LIT(6.0) * real(c.coefficients.z)));
+        r = r - f / max(slope, LIT(0.1));
+    }
+    rvec2 p = target > LIT(1e-12) ? q * (r / target) : q;
+    rvec2 uv = rvec2((p.x + real(c.centre.x) + LIT(1.0)) * LIT(0.5), ((p.y + real(c.centre.y)) * real(g.aspect) + LIT(1.0)) * LIT(0.5));
+    return uv * rvec2(real(g.width), real(g.height));
+}
+
+// False where the lens shows nothing: beyond the cut-off, or where any colour's polynomial has left its range.
+FN bool lens_visible(EyeGeometry g, rvec2 px) {
+    rvec2 green = lens_position(g, g.channels[1], px);
+    rvec2 red = lens_position(g, g.channels[0], px);
+    rvec2 blue = lens_position(g, g.channels[2], px);
+    real lowest = min(lens_denominator(g.channels[1], dot(green, green)),
+                      min(lens_denominator(g.channels[0], dot(red, red)), lens_denominator(g.channels[2], dot(blue, blue))));
+    return dot(green, green) <= real(g.r2_cutoff) && lowest > LIT(0.05);
+}
+
+FN rvec3 direction_of_tangents(rvec2 t) { return normalize(rvec3(t.x, t.y, LIT(-1.0))); }
+
+// Unit direction that pixel `px` of the eye image shows.
+FN rvec3 geometry_direction(EyeGeometry g, rvec2 px) {
+    if (g.kind == geometry_lens) return direction_of_tangents(lens_tangents(g, g.channels[1], px));
+    rvec2 uv = px / rvec2(real(g.width), real(g.height));
+    if (g.kind == geometry_rectilinear)
+        return direction_of_tangents(rvec2(mix(real(g.tan_left), real(g.tan_right), uv.x), mix(real(g.tan_up), real(g.tan_down), uv.y)));
+    real longitude = (uv.x - LIT(0.5)) * LIT(6.283185307179586);
+    real latitude = (LIT(0.5) - uv.y) * LIT(3.141592653589793);
+    return rvec3(sin(longitude) * cos(latitude), sin(latitude), -cos(longitude) * cos(latitude));
+}
+
+// Pixel of the eye image that shows `direction` (need not be a unit vector). Lens and rectilinear: directions behind the eye give (-1e6, -1e6).
+FN rvec2 geometry_pixel(EyeGeometry g, rvec3 direction) {
+    rvec2 size = rvec2(real(g.width), real(g.height));
+    if (g.kind == geometry_equirect) {
+        rvec3 d = normalize(direction);
+        return rvec2(LIT(0.5) + atan(d.x, -d.z) * LIT(0.15915494309189535), LIT(0.5) - asin(clamp(d.y, LIT(-1.0), LIT(1.0))) * LIT(0.3183098861837907)) * size;
+    }
+    if (direction.z > LIT(-1e-3) * length(direction)) return rvec2(LIT(-1e6), LIT(-1e6));
+    rvec2 t = rvec2(direction.x, direction.y) / -direction.z;
+    if (g.kind == geometry_lens) return lens_pixel(g, g.channels[1], t);
+    return rvec2((t.x - real(g.tan_left)) / (real(g.tan_right) - real(g.tan_left)), (t.y - real(g.tan_up)) / (real(g.tan_down) - real(g.tan_up))) *
+           size;
+}
+
+// Whether pixel `px` shows anything at all.
+FN bool geometry_visible(EyeGeometry g, rvec2 px) { return g.kind != geometry_lens || lens_visible(g, px); }
+
+// Solid angle of the pixel around `px`, sr, by central differences of one pixel.
+FN real geometry_solid_angle(EyeGeometry g, rvec2 px) {
+    rvec3 across = geometry_direction(g, px + rvec2(LIT(0.5), LIT(0.0))) - geometry_direction(g, px - rvec2(LIT(0.5), LIT(0.0)));
+    rvec3 down = geometry_direction(g, px + rvec2(LIT(0.0), LIT(0.5))) - geometry_direction(g, px - rvec2(LIT(0.0), LIT(0.5)));
+    return length(cross(across, down));
+}
+
+// Local pixels per degree: the geometric mean of both axes.
+FN real geometry_ppd(EyeGeometry g, rvec2 px) { return LIT(0.017453292519943295) / sqrt(max(geometry_solid_angle(g, px), LIT(1e-20))); }
+
+ENTOPTIC_MATH_END
+
+#endif

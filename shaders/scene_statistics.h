@@ -1,0 +1,47 @@
+// Statistics of an eye image, in two steps: per tile by the pass that writes the image, per view by perception/statistics.comp.
+#ifndef ENTOPTIC_SHADERS_SCENE_STATISTICS_H
+#define ENTOPTIC_SHADERS_SCENE_STATISTICS_H
+
+#include "shaders/shared_types.h"
+
+#ifdef __cplusplus
+namespace entoptic {
+#endif
+
+// One tile is one workgroup of the pass that writes the eye image.
+const uint tile_width = 32;
+const uint tile_height = 8;
+
+// Largest luminance of a scene, cd/m². The solar disc is 1.6e9; facts/perception.md section 1 clamps at 1e8.
+const float max_scene_cd_m2 = 1e8f;
+// Luminance floor of everything that takes a logarithm or divides, cd/m².
+const float min_scene_cd_m2 = 1e-6f;
+
+struct TileStatistics {
+    float sum_y_sr;       // sum over visible pixels of luminance times solid angle, cd/m² sr
+    float sum_sr;         // sum of solid angles, sr
+    float min_y, max_y;   // cd/m²; an empty tile has min 3e38, max 0
+    float max_channel;    // largest of R, G, B, cd/m²
+    uint cleaned;         // pixels that held NaN, infinity, a negative or more than max_scene_cd_m2
+    uint visible;         // pixels that the lens shows
+};
+
+const uint histogram_bins = 64;     // of log10 luminance of tile means, from -6 to 8
+
+// Of one view (eye).
+struct SceneStatistics {
+    float min_y, max_y, max_channel;   // cd/m², over visible pixels
+    float mean_y;                      // solid-angle mean, cd/m²
+    float median_tile_y;               // of tile means, from the histogram, cd/m²
+    float gaze_y;                      // gaze-weighted mean that drives adaptation, cd/m² (written by the adaptation model)
+    float sum_sr;                      // solid angle of the view, sr
+    uint cleaned, visible;
+    uint histogram[histogram_bins];    // tiles a bin
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(TileStatistics) == 28 && sizeof(SceneStatistics) == 36 + 4 * 64, "scalar layout: the GLSL side must agree");
+}  // namespace entoptic
+#endif
+
+#endif
