@@ -1,0 +1,126 @@
+// A perception model: what fills a slot. Every model is a group of files in perception/<slot>/ and a row of perception/models.list;
+// CMake makes the table below from that list, in pipeline order.
+#pragma once
+
+#include "base/image.h"
+#include "base/result.h"
+#include "gpu/commands.h"
+#include "shaders/eye_geometry.h"
+#include "shaders/scene_statistics.h"
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace entoptic::perception {
+
+// One parameter of a model. All parameters are floats; a model's *_params.h struct holds them in this order and nothing else, so that
+// a span of values is the struct.
+struct ParameterInfo {
+    const char* name;
+    const char* unit;     // "1" for pure numbers, "bool" for 0/1 switches
+    float min, max, default_value;
+    const char* source;   // paper and equation, standard, or "choice: why"
+    const char* meaning;  // one line for people
+};
+
+// What the display can show: where tone maps end.
+struct DisplayRange {
+    float white_cd_m2 = 130;
+    float black_cd_m2 = 0.04f;
+};
+
+// One eye's input for one frame, already filtered: always finite, pupil within 1.5..9 mm.
+struct EyeInput {
+    vec3 gaze_direction{0, 0, -1};   // unit, in the axes of the eye image's geometry
+    float pupil_diameter_mm = 4;
+    float eyelid_open = 1;           // 0 closed .. 1 open
+};
+
+// What changes from frame to frame.
+struct FrameInput {
+    double dt_s = 0;            // since the frame before; <= 0 or NaN: states do not move
+    bool snap = false;          // states jump to their steady state (first frame, stall over 2 s, focus regained)
+    std::vector<EyeInput> eyes; // one a view
+    std::uint64_t index = 0;    // counts frames; seeds noise
+};
+
+// State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.
+struct ObserverState;
+
+// Indirect dispatches of one model and the outcome of its gate, on the GPU: perception/gate.h.
+struct Gate;
+
+// Everything a model may touch while it records one frame. All buffers are storage buffers.
+struct StageIo {
+    gpu::Commands& commands;
+    const gpu::Buffer& scene;        // vec4 a pixel, rows, then views: R, G, B in cd/m² (before `tone` scene light, after it display light),
+                                     // w = 1 where the pixel is visible, else 0. Models work in place.
+    const gpu::Buffer& geometry;     // EyeGeometry a view
+    const gpu::Buffer& tiles;        // TileStatistics a tile, rows, then views; of the scene as the warp wrote it
+    const gpu::Buffer& statistics;   // SceneStatistics a view
+    const gpu::Buffer& state;        // ObserverState a view; kept between frames
+    const gpu::Buffer& gate;         // this model's Gate; zeroed at creation, kept between frames
+    std::uint32_t width = 0, height = 0, views = 0;
+    std::uint32_t tiles_x = 0, tiles_y = 0;
+    DisplayRange display;
+    const FrameInput& input;
+};
+
+struct ModelContext {
+    gpu::Device& device;
+    std::vector<EyeGeometry> views;      // all of one size
+    DisplayRange display;
+    std::uint64_t seed = 1;
+};
+
+// A model on the GPU.
+class Model {
+public:
+    virtual ~Model() = default;
+    // `parameters` as in the entry's list, already checked. Called before the first record() and whenever the user changes one.
+    virtual void set_parameters(std::span<const float> parameters) = 0;
+    // True when these parameters change nothing for any scene: the model is not recorded at all.
+    virtual bool is_identity() const { return false; }
+    // Records the model for one frame: gate, then work through indirect dispatches, so that a gated frame costs nothing.
+    // Every dispatch that depends on an earlier one is preceded by io.commands.barrier(); the stage puts barriers around the model.
+    // Errors switch the model off, with the reason in the report; the frame is shown without it.
+    virtual Result<void> record(StageIo& io) = 0;
+};
+
+// The same model in double precision by an independent, slow and obvious algorithm. Works on whole images, one view.
+struct ReferenceFrame {
+    ImageD image;                  // RGB, cd/m²; in place
+    EyeGeometry geometry;
+    DisplayRange display;
+    EyeInput eye;
+    double dt_s = 0;
+    bool snap = false;
+    double adaptation_cd_m2 = 0;   // state, in and out: written by `adaptation`, read by others
+    std::uint64_t seed = 1;
+};
+class ReferenceModel {
+public:
+    virtual ~ReferenceModel() = default;
+    virtual void apply(ReferenceFrame& frame, std::span<const float> parameters) = 0;
+};
+
+struct ModelEntry {
+    std::string_view slot, name;
+    std::string_view summary;                          // one line for `entoptic effects`
+    std::span<const ParameterInfo> parameters;
+    Result<std::unique_ptr<Model>> (*create)(const ModelContext&);
+    std::unique_ptr<ReferenceModel> (*create_reference)();
+};
+
+// All models, in pipeline order (generated from models.list).
+std::span<const ModelEntry* const> models();
+// Null when there is none.
+const ModelEntry* find_model(std::string_view slot, std::string_view name);
+// Slots in pipeline order, each once.
+std::vector<std::string_view> slots();
+
+std::vector<float> default_parameters(const ModelEntry& entry);
+
+}  // namespace entoptic::perception

@@ -1,0 +1,94 @@
+#include "perception/preset.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+
+namespace entoptic::perception {
+namespace {
+
+std::vector<std::string> model_names(std::string_view slot) {
+    std::vector<std::string> names{"none"};
+    for (const ModelEntry* entry : models())
+        if (entry->slot == slot) names.emplace_back(entry->name);
+    return names;
+}
+
+using ModelOfSlot = std::map<std::string, Choice, std::less<>>;
+
+Result<void> choose(ModelOfSlot& chosen, std::string_view slot, std::string_view model) {
+    const auto all = slots();
+    if (std::find(all.begin(), all.end(), slot) == all.end())
+        return usage_error(fmt::format("There is no slot '{}'. Slots: {}.", slot, fmt::join(all, ", ")));
+    if (model == "none") {
+        chosen.erase(std::string(slot));
+        return {};
+    }
+    const ModelEntry* entry = find_model(slot, model);
+    if (!entry) return usage_error(fmt::format("The slot '{}' has no model '{}'. Models: {}.", slot, model, fmt::join(model_names(slot), ", ")));
+    chosen[std::string(slot)] = {entry, default_parameters(*entry)};
+    return {};
+}
+
+Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::string_view name, double value) {
+    const auto found = chosen.find(slot);
+    if (found == chosen.end())
+        return usage_error(fmt::format("Nothing to set: the slot '{}' has no model in this choice. Add --model {}=NAME.", slot, slot));
+    Choice& choice = found->second;
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < choice.entry->parameters.size(); ++i) {
+        const ParameterInfo& info = choice.entry->parameters[i];
+        names.emplace_back(info.name);
+        if (name != info.name) continue;
+        if (!(value >= static_cast<double>(info.min) && value <= static_cast<double>(info.max)))
+            return usage_error(fmt::format("{}.{} = {} is out of range: {} to {} {}.", slot, name, value, info.min, info.max, info.unit));
+        choice.parameters[i] = static_cast<float>(value);
+        return {};
+    }
+    return usage_error(fmt::format("The model '{}' has no parameter '{}'. Parameters: {}.", choice.entry->name, name, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+const Choice* Selection::find(std::string_view slot) const {
+    const auto found = std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.entry->slot == slot; });
+    return found == choices.end() ? nullptr : &*found;
+}
+
+Result<Selection> select(std::string_view preset, const std::vector<std::string>& wanted_models, const std::vector<std::string>& settings) {
+    const auto all = presets();
+    const auto base = std::find_if(all.begin(), all.end(), [&](const Preset& p) { return p.name == preset; });
+    if (base == all.end()) {
+        std::vector<std::string_view> names;
+        for (const Preset& p : all) names.push_back(p.name);
+        return usage_error(fmt::format("There is no preset '{}'. Presets: {}.", preset, fmt::join(names, ", ")));
+    }
+    ModelOfSlot chosen;
+    for (const auto& [slot, model] : base->models) ENTOPTIC_CHECK(choose(chosen, slot, model));
+    for (const PresetParameter& p : base->parameters) ENTOPTIC_CHECK(set_parameter(chosen, p.slot, p.name, static_cast<double>(p.value)));
+    for (const std::string& text : wanted_models) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos) return usage_error(fmt::format("--model {}: write SLOT=NAME.", text));
+        ENTOPTIC_CHECK(choose(chosen, std::string_view(text).substr(0, equals), std::string_view(text).substr(equals + 1)));
+    }
+    for (const std::string& text : settings) {
+        const auto equals = text.find('='), dot = text.find('.');
+        if (equals == std::string::npos || dot == std::string::npos || dot > equals)
+            return usage_error(fmt::format("--set {}: write SLOT.PARAMETER=VALUE.", text));
+        double value = 0;
+        const char* end = text.data() + text.size();
+        const auto parsed = std::from_chars(text.data() + equals + 1, end, value);
+        if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(value))
+            return usage_error(fmt::format("--set {}: '{}' is not a number.", text, text.substr(equals + 1)));
+        ENTOPTIC_CHECK(set_parameter(chosen, std::string_view(text).substr(0, dot), std::string_view(text).substr(dot + 1, equals - dot - 1), value));
+    }
+    Selection selection{std::string(preset), {}};
+    for (const ModelEntry* entry : models())
+        if (const auto found = chosen.find(entry->slot); found != chosen.end() && found->second.entry == entry) selection.choices.push_back(found->second);
+    return selection;
+}
+
+}  // namespace entoptic::perception

@@ -1,0 +1,33 @@
+// The presets themselves, as data.
+#include "perception/preset.h"
+
+namespace entoptic::perception {
+
+std::span<const Preset> presets() {
+    static const std::vector<Preset> table = {
+        {"off", "No simulation: layers go through warp and lens to the panel, bit for bit", {}, {}},
+        {"luidolt2020",
+         "Luidolt et al. 2020 with its errors corrected (facts: traps L1, L2, L5-L9, L12, L14, L18-L20, L23)",
+         {{"adaptation", "krawczyk_exp_linear"},
+          {"glare", "luidolt_spectral"},
+          {"acuity", "luidolt_eq12"},
+          {"tone", "key_reinhard"},
+          {"mesopic", "luidolt_tint"}},
+         {}},
+        {"luidolt2020_as_printed",
+         "Luidolt et al. 2020 with the equations as printed, for research only",
+         {{"adaptation", "krawczyk_exp_linear"},
+          {"glare", "luidolt_spectral"},
+          {"acuity", "luidolt_eq12"},
+          {"tone", "key_reinhard"},
+          {"mesopic", "luidolt_tint"}},
+         {{"adaptation", "as_printed", 1},
+          {"glare", "as_printed", 1},
+          {"acuity", "as_printed", 1},
+          {"tone", "as_printed", 1},
+          {"mesopic", "as_printed", 1}}},
+    };
+    return table;
+}
+
+}  // namespace entoptic::perception

@@ -1,0 +1,216 @@
+#include "perception/stage.h"
+
+#include "base/log.h"
+#include "perception/gate.h"
+#include "perception/observer_state.h"
+
+#include "perception/ingest.comp.h"
+#include "perception/statistics.comp.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <fmt/format.h>
+
+namespace entoptic::perception {
+namespace {
+
+using gpu::BindingKind;
+
+struct StatisticsPush {
+    uint tile_count;
+};
+
+std::string label(const Choice& choice) { return fmt::format("perceive.{}", choice.entry->slot); }
+
+}  // namespace
+
+Result<std::unique_ptr<Stage>> Stage::create(gpu::Device& device, const StageOptions& options) {
+    std::unique_ptr<Stage> stage(new Stage(device));
+    ENTOPTIC_CHECK(stage->allocate(options));
+    ENTOPTIC_CHECK(stage->select(options.selection));
+    return stage;
+}
+
+Stage::~Stage() = default;
+
+Result<void> Stage::allocate(const StageOptions& options) {
+    if (options.views.empty() || options.views[0].width == 0 || options.views[0].height == 0)
+        return failure("The perception stage needs at least one view of at least one pixel.");
+    width_ = options.views[0].width;
+    height_ = options.views[0].height;
+    views_ = static_cast<std::uint32_t>(options.views.size());
+    context_.views = options.views;
+    context_.display = options.display;
+    context_.seed = options.seed;
+    const auto buffer = [&](gpu::Buffer& into, std::size_t bytes, gpu::BufferKind kind, const char* name) -> Result<void> {
+        ENTOPTIC_TRY(made, gpu::Buffer::create(device_, bytes, kind, name));
+        into = std::move(made);
+        return {};
+    };
+    const std::size_t tile_bytes = std::size_t(tiles_x()) * tiles_y() * views_ * sizeof(TileStatistics);
+    ENTOPTIC_CHECK(buffer(scene_, view_bytes() * views_, gpu::BufferKind::device, "scene"));
+    ENTOPTIC_CHECK(buffer(tiles_, tile_bytes, gpu::BufferKind::device, "tiles"));
+    ENTOPTIC_CHECK(buffer(geometry_, sizeof(EyeGeometry) * views_, gpu::BufferKind::upload, "geometry"));
+    ENTOPTIC_CHECK(buffer(statistics_, sizeof(SceneStatistics) * views_, gpu::BufferKind::device, "statistics"));
+    ENTOPTIC_CHECK(buffer(statistics_readback_, sizeof(SceneStatistics) * views_, gpu::BufferKind::readback, "statistics readback"));
+    // Small, written once by the CPU and read back every frame: one host-visible buffer does both.
+    ENTOPTIC_CHECK(buffer(state_, sizeof(ObserverState) * views_, gpu::BufferKind::upload, "observer state"));
+    ENTOPTIC_CHECK(buffer(state_readback_, sizeof(ObserverState) * views_, gpu::BufferKind::readback, "observer state readback"));
+    std::memcpy(geometry_.bytes().data(), options.views.data(), geometry_.size());
+    std::memset(state_.bytes().data(), 0, state_.size());
+    std::memset(state_readback_.bytes().data(), 0, state_readback_.size());
+    std::memset(statistics_readback_.bytes().data(), 0, statistics_readback_.size());
+    downloads_.resize(views_);
+
+    const auto storage = BindingKind::storage_buffer;
+    ENTOPTIC_TRY(ingest, gpu::Kernel::create(device_, {"ingest", ingest_comp_spv, {storage, storage, storage, storage}, 0, {}}));
+    ingest_ = std::move(ingest);
+    ENTOPTIC_TRY(statistics, gpu::Kernel::create(device_, {"statistics", statistics_comp_spv, {storage, storage}, sizeof(StatisticsPush), {}}));
+    statistics_kernel_ = std::move(statistics);
+    return {};
+}
+
+Result<Stage::Slot> Stage::make_slot(const Choice& choice) {
+    Slot slot;
+    slot.choice = choice;
+    ENTOPTIC_TRY(gate, gpu::Buffer::create(device_, sizeof(Gate), gpu::BufferKind::upload, fmt::format("gate {}", choice.entry->slot)));
+    ENTOPTIC_TRY(readback, gpu::Buffer::create(device_, sizeof(Gate), gpu::BufferKind::readback, fmt::format("gate readback {}", choice.entry->slot)));
+    std::memset(gate.bytes().data(), 0, gate.size());
+    std::memset(readback.bytes().data(), 0, readback.size());
+    slot.gate = std::move(gate);
+    slot.gate_readback = std::move(readback);
+    auto model = choice.entry->create(context_);
+    if (model) {
+        slot.model = std::move(*model);
+        slot.model->set_parameters(choice.parameters);
+    } else {
+        // One model that cannot start must not take the picture away: it is switched off and the user told.
+        slot.failed = model.error().message;
+        log::error("The model {} is switched off: {}", choice.entry->name, slot.failed);
+    }
+    return slot;
+}
+
+Result<void> Stage::select(const Selection& selection) {
+    std::vector<Slot> next;
+    for (const Choice& choice : selection.choices) {
+        const auto kept = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.model && s.choice.entry == choice.entry; });
+        if (kept != slots_.end()) {
+            kept->model->set_parameters(choice.parameters);
+            kept->choice = choice;
+            next.push_back(std::move(*kept));
+            continue;
+        }
+        ENTOPTIC_TRY(slot, make_slot(choice));
+        next.push_back(std::move(slot));
+    }
+    slots_ = std::move(next);
+    selection_ = selection;
+    return {};
+}
+
+Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images) {
+    const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * 3 * sizeof(float);
+    if (images.size() != views_) return failure(fmt::format("The stage has {} views but {} pictures came.", views_, images.size()));
+    if (!upload_) {
+        ENTOPTIC_TRY(upload, gpu::Buffer::create(device_, bytes * views_, gpu::BufferKind::upload, "picture upload"));
+        upload_ = std::move(upload);
+    }
+    for (std::uint32_t v = 0; v < views_; ++v) {
+        const ImageF& image = images[v];
+        if (image.width != static_cast<int>(width_) || image.height != static_cast<int>(height_) || image.channels != 3)
+            return failure(fmt::format("A picture of {}x{} with 3 channels was expected, {}x{} with {} came.", width_, height_, image.width, image.height,
+                                       image.channels));
+        std::memcpy(upload_.bytes().data() + v * bytes, image.data.data(), bytes);
+    }
+    commands.begin_stage("ingest");
+    commands.dispatch(ingest_, {upload_, geometry_, scene_, tiles_}, gpu::NoPush{}, {tiles_x(), tiles_y(), views_});
+    commands.barrier();
+    commands.end_stage();
+    return {};
+}
+
+void Stage::set_adaptation(float cd_m2) {
+    for (ObserverState& state : state_.as<ObserverState>()) state = {cd_m2, cd_m2, 1u, 0u};
+}
+
+void Stage::record(gpu::Commands& commands, const FrameInput& input) {
+    assert(input.eyes.size() == views_);
+    commands.begin_stage("statistics");
+    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y()}, {views_, 1, 1});
+    commands.barrier();
+    commands.end_stage();
+    for (Slot& slot : slots_) {
+        slot.recorded = false;
+        if (!slot.model || !slot.failed.empty() || slot.model->is_identity()) continue;
+        StageIo io{commands, scene_, geometry_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
+        commands.begin_stage(label(slot.choice));
+        const auto recorded = slot.model->record(io);
+        commands.barrier();
+        commands.end_stage();
+        if (recorded) {
+            slot.recorded = true;
+            commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
+        } else {
+            slot.failed = recorded.error().message;
+            log::error("The model {} is switched off: {}", slot.choice.entry->name, slot.failed);
+        }
+    }
+    commands.copy(statistics_, statistics_readback_, statistics_.size());
+    commands.copy(state_, state_readback_, state_.size());
+    commands.barrier();
+}
+
+Result<void> Stage::record_download(gpu::Commands& commands, std::uint32_t view) {
+    assert(view < views_);
+    if (!downloads_[view]) {
+        ENTOPTIC_TRY(download, gpu::Buffer::create(device_, view_bytes(), gpu::BufferKind::readback, "download"));
+        downloads_[view] = std::move(download);
+    }
+    commands.copy(scene_, downloads_[view], view_bytes(), view * view_bytes());
+    return {};
+}
+
+ImageF Stage::downloaded(std::uint32_t view) const {
+    ImageF image(static_cast<int>(width_), static_cast<int>(height_), 3);
+    const auto pixels = downloads_[view].as<vec4>();
+    for (std::size_t i = 0; i < pixels.size() && i * 3 < image.data.size(); ++i)
+        for (int c = 0; c < 3; ++c) image.data[i * 3 + static_cast<std::size_t>(c)] = pixels[i][c];
+    return image;
+}
+
+std::vector<EffectOutcome> Stage::effects() const {
+    std::vector<EffectOutcome> outcomes;
+    for (const Slot& slot : slots_) {
+        const Gate& gate = slot.gate_readback.as<Gate>()[0];
+        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded, false, slot.failed, {}, 0};
+        // A model that has no gate never sets a counter: it always runs.
+        outcome.gated = slot.recorded && gate.active == 0 && gate.frames_run + gate.frames_gated > 0;
+        outcome.bound_codes = outcome.gated ? gate.bound : 0;
+        if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
+        else if (!slot.recorded) outcome.why = "its parameters change nothing";
+        else if (outcome.gated) outcome.why = fmt::format("cannot be seen in this frame (at most {:.3g} of a code value)", gate.bound);
+        else outcome.why = "runs";
+        outcomes.push_back(std::move(outcome));
+    }
+    return outcomes;
+}
+
+ViewOutcome Stage::view(std::uint32_t index) const {
+    const SceneStatistics& s = statistics_readback_.as<SceneStatistics>()[index];
+    const ObserverState& o = state_readback_.as<ObserverState>()[index];
+    return {o.adaptation_cd_m2, o.target_cd_m2, s.min_y, s.max_y, s.mean_y, s.cleaned};
+}
+
+void Stage::accumulate_totals() {
+    for (const EffectOutcome& outcome : effects()) {
+        Totals& total = totals_[outcome.slot];
+        total.recorded += outcome.recorded && !outcome.gated;
+        total.gated += outcome.gated || (!outcome.recorded && outcome.failed.empty());
+        total.failed += !outcome.failed.empty();
+        total.why = outcome.why;
+    }
+}
+
+}  // namespace entoptic::perception

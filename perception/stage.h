@@ -1,0 +1,103 @@
+// The perception stage: scene luminance in, the light the panel should send out, in place. Runs the chosen models in pipeline order on
+// all views of a frame at once. Knows nothing of OpenXR, swapchains or devices.
+#pragma once
+
+#include "perception/model.h"
+#include "perception/preset.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace entoptic::perception {
+
+struct StageOptions {
+    std::vector<EyeGeometry> views;    // 1 or more, all of one size
+    DisplayRange display;
+    Selection selection;
+    std::uint64_t seed = 1;
+};
+
+// What one model did in one frame.
+struct EffectOutcome {
+    std::string slot, model;
+    bool recorded = false;      // work was recorded (else: identity parameters, or it failed before)
+    bool gated = false;         // recorded, but the GPU found that it cannot be seen in this frame
+    std::string failed;         // why it was switched off; empty when well
+    std::string why;            // one plain sentence
+    float bound_codes = 0;      // largest displayed change that gating may have caused
+};
+
+// After a frame: what is known of each view.
+struct ViewOutcome {
+    float adaptation_cd_m2 = 0, target_cd_m2 = 0;
+    float min_y = 0, max_y = 0, mean_y = 0;
+    std::uint32_t cleaned = 0;      // pixels that held NaN, infinity, negatives or more than 1e8 cd/m²
+};
+
+class Stage {
+public:
+    static Result<std::unique_ptr<Stage>> create(gpu::Device& device, const StageOptions& options);
+    ~Stage();
+
+    // The eye image: vec4 a pixel (R, G, B in cd/m², w = 1 where visible), rows, then views. The warp (or ingest) writes it and the tiles
+    // (shaders/tile_statistics.glsl: workgroups of 32×8 write TileStatistics), then record() turns it into display light.
+    const gpu::Buffer& scene() const { return scene_; }
+    const gpu::Buffer& tiles() const { return tiles_; }
+    const gpu::Buffer& geometry() const { return geometry_; }
+    std::uint32_t width() const { return width_; }
+    std::uint32_t height() const { return height_; }
+    std::uint32_t views() const { return views_; }
+    std::uint32_t tiles_x() const { return gpu::groups_for(width_, tile_width); }
+    std::uint32_t tiles_y() const { return gpu::groups_for(height_, tile_height); }
+    std::size_t view_bytes() const { return std::size_t(width_) * height_ * sizeof(vec4); }
+
+    // For pictures that come from the CPU: uploads RGB (one image a view, of the stage's size, any values) and records the pass that
+    // cleans it and writes scene and tiles. Waits for nothing; call before record() in the same batch.
+    Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images);
+    // The eyes have been adapted to this luminance (cd/m²) until now: the state before the next frame. Call between frames.
+    void set_adaptation(float cd_m2);
+    // Records statistics and all models. The scene must have been written earlier in the same batch, with a barrier() after it.
+    // Each model is a stage of `commands` ("perceive.glare"). Leaves a barrier behind.
+    void record(gpu::Commands& commands, const FrameInput& input);
+    // Records the copy of one view of the image to host memory; read it with downloaded() after the batch was waited for.
+    Result<void> record_download(gpu::Commands& commands, std::uint32_t view);
+    ImageF downloaded(std::uint32_t view) const;   // RGB
+
+    // Of the frame recorded last; valid after its batch was waited for.
+    std::vector<EffectOutcome> effects() const;
+    ViewOutcome view(std::uint32_t index) const;
+    // Frames each effect was recorded, gated, failed, since the start: for the report.
+    struct Totals { std::uint64_t recorded = 0, gated = 0, failed = 0; std::string why; };
+    const std::map<std::string, Totals>& totals() const { return totals_; }
+    void accumulate_totals();      // call once a frame after the batch was waited for
+
+    const Selection& selection() const { return selection_; }
+    // Replaces models and parameters from the next frame on; state that both choices share is kept.
+    Result<void> select(const Selection& selection);
+
+private:
+    struct Slot {
+        Choice choice;
+        std::unique_ptr<Model> model;
+        gpu::Buffer gate, gate_readback;
+        std::string failed;
+        bool recorded = false;
+    };
+    explicit Stage(gpu::Device& device) : device_(device) {}
+    Result<void> allocate(const StageOptions& options);
+    Result<Slot> make_slot(const Choice& choice);
+
+    gpu::Device& device_;
+    ModelContext context_{device_, {}, {}, 1};
+    Selection selection_;
+    std::uint32_t width_ = 0, height_ = 0, views_ = 0;
+    gpu::Buffer scene_, tiles_, geometry_, statistics_, state_;
+    gpu::Buffer upload_, statistics_readback_, state_readback_;
+    std::vector<gpu::Buffer> downloads_;
+    gpu::Kernel ingest_, statistics_kernel_;
+    std::vector<Slot> slots_;
+    std::map<std::string, Totals> totals_;
+};
+
+}  // namespace entoptic::perception
