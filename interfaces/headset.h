@@ -6,6 +6,7 @@
 #include "interfaces/sources.h"
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
@@ -43,9 +44,16 @@ struct Photometry {
 struct DisplayIdentity {
     std::string name;                    // "HTC Vive Pro (virtual)"
     int panel_width = 1440, panel_height = 1600;   // pixels, one eye
-    DurationNs period = ns_per_s / 90;   // of a refresh
+    DurationNs period = ns_per_s / 90;   // of a refresh, rounded
     DurationNs vblank_to_photon = 0;     // from the vblank that starts scan-out to the middle of the light
     Photometry photometry;
+    std::int64_t refresh_numerator = 90, refresh_denominator = 1;   // refreshes per second, exact
+
+    // When refresh k after `start` happens, to the nearest nanosecond; k >= 0. Does not drift, as a sum of rounded periods would.
+    TimeNs refresh_time(TimeNs start, std::int64_t k) const {
+        const std::int64_t whole = k / refresh_numerator, rest = k % refresh_numerator;
+        return start + whole * refresh_denominator * ns_per_s + (rest * refresh_denominator * ns_per_s + refresh_numerator / 2) / refresh_numerator;
+    }
 };
 
 struct EyeOptics {

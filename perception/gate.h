@@ -17,7 +17,7 @@ struct GateDispatch {
 
 struct Gate {
     GateDispatch dispatch[gate_dispatches];
-    uint active;            // 1: the model ran in this frame, 0: gated
+    uint ran;               // 1: the model ran in this frame, 0: gated
     uint reason;            // model's own number, see its ModelEntry page; 0 none
     float bound;            // largest displayed change that gating may cause, 8-bit code values
     float value;            // what was compared with the bound, in the model's own unit

@@ -56,8 +56,9 @@ struct Gate;
 struct StageIo {
     gpu::Commands& commands;
     const gpu::Buffer& scene;        // vec4 a pixel, rows, then views: R, G, B in cd/m² (before `tone` scene light, after it display light),
-                                     // w = 1 where the pixel is visible, else 0. Models work in place.
+                                     // w = 0 where the lens shows nothing, else more. Models work in place and keep w.
     const gpu::Buffer& geometry;     // EyeGeometry a view
+    const gpu::Buffer& solid_angle;  // float a pixel, rows, then views: sr, 0 where the lens shows nothing
     const gpu::Buffer& tiles;        // TileStatistics a tile, rows, then views; of the scene as the warp wrote it
     const gpu::Buffer& statistics;   // SceneStatistics a view
     const gpu::Buffer& state;        // ObserverState a view; kept between frames

@@ -5,7 +5,9 @@
 #include "perception/observer_state.h"
 
 #include "perception/ingest.comp.h"
+#include "perception/solid_angle.comp.h"
 #include "perception/statistics.comp.h"
+#include "perception/tiles.comp.h"
 
 #include <algorithm>
 #include <cassert>
@@ -19,6 +21,9 @@ using gpu::BindingKind;
 
 struct StatisticsPush {
     uint tile_count;
+};
+struct SizePush {
+    uint width, height;
 };
 
 std::string label(const Choice& choice) { return fmt::format("perceive.{}", choice.entry->slot); }
@@ -63,12 +68,30 @@ Result<void> Stage::allocate(const StageOptions& options) {
     std::memset(statistics_readback_.bytes().data(), 0, statistics_readback_.size());
     downloads_.resize(views_);
 
+    ENTOPTIC_CHECK(buffer(solid_angle_, view_bytes() / 4 * views_, gpu::BufferKind::device, "solid angles"));
+    ENTOPTIC_CHECK(create_kernels());
+    return fill_solid_angles();
+}
+
+Result<void> Stage::create_kernels() {
     const auto storage = BindingKind::storage_buffer;
-    ENTOPTIC_TRY(ingest, gpu::Kernel::create(device_, {"ingest", ingest_comp_spv, {storage, storage, storage, storage}, 0, {}}));
+    ENTOPTIC_TRY(ingest, gpu::Kernel::create(device_, {"ingest", ingest_comp_spv, {storage, storage, storage}, sizeof(SizePush), {}}));
     ingest_ = std::move(ingest);
+    ENTOPTIC_TRY(tiles, gpu::Kernel::create(device_, {"tiles", tiles_comp_spv, {storage, storage, storage}, sizeof(SizePush), {}}));
+    tiles_kernel_ = std::move(tiles);
     ENTOPTIC_TRY(statistics, gpu::Kernel::create(device_, {"statistics", statistics_comp_spv, {storage, storage}, sizeof(StatisticsPush), {}}));
     statistics_kernel_ = std::move(statistics);
     return {};
+}
+
+Result<void> Stage::fill_solid_angles() {
+    const auto storage = BindingKind::storage_buffer;
+    ENTOPTIC_TRY(kernel, gpu::Kernel::create(device_, {"solid angles", solid_angle_comp_spv, {storage, storage}, 0, {}}));
+    ENTOPTIC_TRY(commands, gpu::Commands::create(device_, "solid angles"));
+    ENTOPTIC_CHECK(commands.begin());
+    commands.dispatch(kernel, {geometry_, solid_angle_}, gpu::NoPush{}, {gpu::groups_for(width_, 32), gpu::groups_for(height_, 8), views_});
+    ENTOPTIC_CHECK(commands.submit());
+    return commands.wait();
 }
 
 Result<Stage::Slot> Stage::make_slot(const Choice& choice) {
@@ -125,7 +148,7 @@ Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const Image
         std::memcpy(upload_.bytes().data() + v * bytes, image.data.data(), bytes);
     }
     commands.begin_stage("ingest");
-    commands.dispatch(ingest_, {upload_, geometry_, scene_, tiles_}, gpu::NoPush{}, {tiles_x(), tiles_y(), views_});
+    commands.dispatch(ingest_, {upload_, solid_angle_, scene_}, SizePush{width_, height_}, {gpu::groups_for(width_, 32), gpu::groups_for(height_, 8), views_});
     commands.barrier();
     commands.end_stage();
     return {};
@@ -138,13 +161,15 @@ void Stage::set_adaptation(float cd_m2) {
 void Stage::record(gpu::Commands& commands, const FrameInput& input) {
     assert(input.eyes.size() == views_);
     commands.begin_stage("statistics");
+    commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
+    commands.barrier();
     commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y()}, {views_, 1, 1});
     commands.barrier();
     commands.end_stage();
     for (Slot& slot : slots_) {
         slot.recorded = false;
         if (!slot.model || !slot.failed.empty() || slot.model->is_identity()) continue;
-        StageIo io{commands, scene_, geometry_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
+        StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
         commands.begin_stage(label(slot.choice));
         const auto recorded = slot.model->record(io);
         commands.barrier();
@@ -186,7 +211,7 @@ std::vector<EffectOutcome> Stage::effects() const {
         const Gate& gate = slot.gate_readback.as<Gate>()[0];
         EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded, false, slot.failed, {}, 0};
         // A model that has no gate never sets a counter: it always runs.
-        outcome.gated = slot.recorded && gate.active == 0 && gate.frames_run + gate.frames_gated > 0;
+        outcome.gated = slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0;
         outcome.bound_codes = outcome.gated ? gate.bound : 0;
         if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
         else if (!slot.recorded) outcome.why = "its parameters change nothing";

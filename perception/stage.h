@@ -40,10 +40,11 @@ public:
     static Result<std::unique_ptr<Stage>> create(gpu::Device& device, const StageOptions& options);
     ~Stage();
 
-    // The eye image: vec4 a pixel (R, G, B in cd/m², w = 1 where visible), rows, then views. The warp (or ingest) writes it and the tiles
-    // (shaders/tile_statistics.glsl: workgroups of 32×8 write TileStatistics), then record() turns it into display light.
+    // The eye image: vec4 a pixel (R, G, B in cd/m², w see scene_pixel() in shaders/tile_statistics.glsl), rows, then views. The warp (or
+    // ingest) writes it, then record() reduces its statistics and turns it into display light, in place.
     const gpu::Buffer& scene() const { return scene_; }
-    const gpu::Buffer& tiles() const { return tiles_; }
+    // Solid angle of each pixel, float, sr; 0 where the lens shows nothing. Constant.
+    const gpu::Buffer& solid_angle() const { return solid_angle_; }
     const gpu::Buffer& geometry() const { return geometry_; }
     std::uint32_t width() const { return width_; }
     std::uint32_t height() const { return height_; }
@@ -53,7 +54,7 @@ public:
     std::size_t view_bytes() const { return std::size_t(width_) * height_ * sizeof(vec4); }
 
     // For pictures that come from the CPU: uploads RGB (one image a view, of the stage's size, any values) and records the pass that
-    // cleans it and writes scene and tiles. Waits for nothing; call before record() in the same batch.
+    // cleans it and writes the scene. Waits for nothing; call before record() in the same batch.
     Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images);
     // The eyes have been adapted to this luminance (cd/m²) until now: the state before the next frame. Call between frames.
     void set_adaptation(float cd_m2);
@@ -86,16 +87,18 @@ private:
     };
     explicit Stage(gpu::Device& device) : device_(device) {}
     Result<void> allocate(const StageOptions& options);
+    Result<void> create_kernels();
+    Result<void> fill_solid_angles();
     Result<Slot> make_slot(const Choice& choice);
 
     gpu::Device& device_;
     ModelContext context_{device_, {}, {}, 1};
     Selection selection_;
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;
-    gpu::Buffer scene_, tiles_, geometry_, statistics_, state_;
+    gpu::Buffer scene_, tiles_, solid_angle_, geometry_, statistics_, state_;
     gpu::Buffer upload_, statistics_readback_, state_readback_;
     std::vector<gpu::Buffer> downloads_;
-    gpu::Kernel ingest_, statistics_kernel_;
+    gpu::Kernel ingest_, tiles_kernel_, statistics_kernel_;
     std::vector<Slot> slots_;
     std::map<std::string, Totals> totals_;
 };

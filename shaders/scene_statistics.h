@@ -1,4 +1,4 @@
-// Statistics of an eye image, in two steps: per tile by the pass that writes the image, per view by perception/statistics.comp.
+// Statistics of an eye image, in two steps: per tile by perception/tiles.comp, per view by perception/statistics.comp.
 #ifndef ENTOPTIC_SHADERS_SCENE_STATISTICS_H
 #define ENTOPTIC_SHADERS_SCENE_STATISTICS_H
 
@@ -8,9 +8,14 @@
 namespace entoptic {
 #endif
 
-// One tile is one workgroup of the pass that writes the eye image.
+// A tile, in pixels.
 const uint tile_width = 32;
 const uint tile_height = 8;
+
+// The fourth component of an eye-image pixel.
+const float pixel_hidden = 0.0f;    // the lens does not show it
+const float pixel_visible = 1.0f;
+const float pixel_cleaned = 2.0f;   // visible, and held NaN, infinity, a negative or too much
 
 // Largest luminance of a scene, cd/m². The solar disc is 1.6e9; facts/perception.md section 1 clamps at 1e8.
 const float max_scene_cd_m2 = 1e8f;

@@ -1,5 +1,6 @@
-// For the pass that writes the eye image: cleans a pixel and reduces the workgroup's 32×8 pixels to one TileStatistics.
-// The reduction is a fixed tree: the same input gives the same bits.
+// For the pass that writes the eye image: cleans a pixel and packs it. The tiles' statistics are made by perception/tiles.comp, which
+// Stage::record() runs first: a reduction in the workgroup of the writing pass costs 850 ms of CPU a frame on lavapipe (barriers), the
+// extra pass 44 ms (docs/decisions).
 #ifndef ENTOPTIC_SHADERS_TILE_STATISTICS_GLSL
 #define ENTOPTIC_SHADERS_TILE_STATISTICS_GLSL
 
@@ -15,32 +16,9 @@ vec3 clean_scene_colour(vec3 c, out bool changed) {
     return cleaned;
 }
 
-shared TileStatistics tile_parts[tile_width * tile_height];
-
-// Every invocation of the workgroup must call this. `inside`: the pixel is inside the image and visible; `solid_angle` in sr.
-// The result is valid in invocation 0 after the call.
-TileStatistics reduce_tile(vec3 c, bool inside, bool changed, float solid_angle) {
-    const uint i = gl_LocalInvocationIndex;
-    const float y = luminance(c);
-    tile_parts[i] = inside ? TileStatistics(y * solid_angle, solid_angle, y, y, max(c.x, max(c.y, c.z)), changed ? 1u : 0u, 1u)
-                           : TileStatistics(0.0, 0.0, 3e38, 0.0, 0.0, 0u, 0u);
-    for (uint stride = tile_width * tile_height / 2; stride > 0; stride /= 2) {
-        barrier();
-        if (i < stride) {
-            const TileStatistics b = tile_parts[i + stride];
-            TileStatistics a = tile_parts[i];
-            a.sum_y_sr += b.sum_y_sr;
-            a.sum_sr += b.sum_sr;
-            a.min_y = min(a.min_y, b.min_y);
-            a.max_y = max(a.max_y, b.max_y);
-            a.max_channel = max(a.max_channel, b.max_channel);
-            a.cleaned += b.cleaned;
-            a.visible += b.visible;
-            tile_parts[i] = a;
-        }
-    }
-    barrier();
-    return tile_parts[0];
+// The vec4 of an eye-image pixel: w is pixel_hidden, pixel_visible or pixel_cleaned.
+vec4 scene_pixel(vec3 cleaned, bool visible, bool changed) {
+    return visible ? vec4(cleaned, changed ? pixel_cleaned : pixel_visible) : vec4(0.0, 0.0, 0.0, pixel_hidden);
 }
 
 #endif
