@@ -1,0 +1,155 @@
+#include "samples/common/eye_pass.h"
+
+#include <array>
+
+namespace samples {
+
+static VkAttachmentDescription attachment(VkFormat format, VkSampleCountFlagBits samples, VkAttachmentLoadOp load,
+                                          VkAttachmentStoreOp store, VkImageLayout layout) {
+    VkAttachmentDescription description{};
+    description.format = format;
+    description.samples = samples;
+    description.loadOp = load;
+    description.storeOp = store;
+    description.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    description.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    description.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    description.finalLayout = layout;
+    return description;
+}
+
+// Attachments: 0 the image that is kept; then depth, if any; then the multisample image, if any.
+OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
+    constexpr auto colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    constexpr auto depth_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    const bool resolves = format.samples != VK_SAMPLE_COUNT_1_BIT;
+    std::vector<VkAttachmentDescription> attachments;
+    attachments.push_back(attachment(format.colour, VK_SAMPLE_COUNT_1_BIT,
+                                     resolves ? VK_ATTACHMENT_LOAD_OP_DONT_CARE : VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_STORE,
+                                     colour_layout));
+    VkAttachmentReference kept{0, colour_layout};
+    VkAttachmentReference depth{1, depth_layout};
+    if (format.depth) {
+        attachments.push_back(
+            attachment(VK_FORMAT_D32_SFLOAT, format.samples, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_DONT_CARE, depth_layout));
+    }
+    VkAttachmentReference multisample{static_cast<std::uint32_t>(attachments.size()), colour_layout};
+    if (resolves) {
+        attachments.push_back(
+            attachment(format.colour, format.samples, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_DONT_CARE, colour_layout));
+    }
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = resolves ? &multisample : &kept;
+    subpass.pResolveAttachments = resolves ? &kept : nullptr;
+    subpass.pDepthStencilAttachment = format.depth ? &depth : nullptr;
+
+    // The depth and multisample images are shared by successive pictures of an eye: the next must not begin to write
+    // before the last has finished.
+    VkSubpassDependency dependency{};
+    dependency.srcSubpass = VK_SUBPASS_EXTERNAL;
+    dependency.dstSubpass = 0;
+    dependency.srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    dependency.dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT;
+    dependency.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    dependency.dstAccessMask = dependency.srcAccessMask | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+
+    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    info.attachmentCount = static_cast<std::uint32_t>(attachments.size());
+    info.pAttachments = attachments.data();
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = 1;
+    info.pDependencies = &dependency;
+    VkRenderPass render_pass = VK_NULL_HANDLE;
+    check_vk(vkCreateRenderPass(gpu.device(), &info, nullptr, &render_pass), "vkCreateRenderPass");
+    return {gpu.device(), render_pass};
+}
+
+static OwnedFramebuffer create_framebuffer(const Gpu& gpu, VkRenderPass render_pass, VkExtent2D extent,
+                                           const std::vector<VkImageView>& views) {
+    VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+    info.renderPass = render_pass;
+    info.attachmentCount = static_cast<std::uint32_t>(views.size());
+    info.pAttachments = views.data();
+    info.width = extent.width;
+    info.height = extent.height;
+    info.layers = 1;
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    check_vk(vkCreateFramebuffer(gpu.device(), &info, nullptr, &framebuffer), "vkCreateFramebuffer");
+    return {gpu.device(), framebuffer};
+}
+
+EyePass::EyePass(const Gpu& gpu, const PassFormat& format, VkRenderPass render_pass, VkExtent2D extent, const std::vector<VkImage>& images)
+    : gpu_(&gpu), format_(format), render_pass_(render_pass), extent_(extent) {
+    std::vector<VkImageView> shared_views;
+    if (format.depth) {
+        depth_ = create_image(gpu, {.format = VK_FORMAT_D32_SFLOAT,
+                                    .extent = extent,
+                                    .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                                    .samples = format.samples});
+        shared_views.push_back(depth_.view.get());
+    }
+    if (format.samples != VK_SAMPLE_COUNT_1_BIT) {
+        multisample_ = create_image(gpu, {.format = format.colour,
+                                          .extent = extent,
+                                          .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT,
+                                          .samples = format.samples});
+        shared_views.push_back(multisample_.view.get());
+    }
+    for (VkImage image : images) {
+        views_.push_back(create_image_view(gpu, image, format.colour, 1));
+        std::vector<VkImageView> attached{views_.back().get()};
+        attached.insert(attached.end(), shared_views.begin(), shared_views.end());
+        framebuffers_.push_back(create_framebuffer(gpu, render_pass, extent, attached));
+    }
+    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    allocate.commandPool = gpu.command_pool();
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    check_vk(vkAllocateCommandBuffers(gpu.device(), &allocate, &commands_), "vkAllocateCommandBuffers");
+    VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    fence_info.flags = VK_FENCE_CREATE_SIGNALED_BIT;
+    VkFence fence = VK_NULL_HANDLE;
+    check_vk(vkCreateFence(gpu.device(), &fence_info, nullptr, &fence), "vkCreateFence");
+    done_ = {gpu.device(), fence};
+}
+
+void EyePass::wait() const {
+    const VkFence fence = done_.get();
+    check_vk(vkWaitForFences(gpu_->device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+}
+
+void EyePass::draw(std::uint32_t index, const std::function<void(VkCommandBuffer)>& record) const {
+    wait();
+    const VkFence fence = done_.get();
+    check_vk(vkResetFences(gpu_->device(), 1, &fence), "vkResetFences");
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    check_vk(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+
+    const VkClearValue black{.color = {.float32 = {0, 0, 0, 1}}};
+    const VkClearValue far{.depthStencil = {1.0F, 0}};
+    const std::array clears{black, format_.depth ? far : black, black};
+    VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    pass.renderPass = render_pass_;
+    pass.framebuffer = framebuffers_.at(index).get();
+    pass.renderArea = {{0, 0}, extent_};
+    pass.clearValueCount = static_cast<std::uint32_t>(clears.size());
+    pass.pClearValues = clears.data();
+    vkCmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport viewport{0, 0, static_cast<float>(extent_.width), static_cast<float>(extent_.height), 0, 1};
+    vkCmdSetViewport(commands_, 0, 1, &viewport);
+    vkCmdSetScissor(commands_, 0, 1, &pass.renderArea);
+    record(commands_);
+    vkCmdEndRenderPass(commands_);
+
+    check_vk(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands_;
+    check_vk(vkQueueSubmit(gpu_->queue(), 1, &submit, fence), "vkQueueSubmit");
+}
+
+}  // namespace samples

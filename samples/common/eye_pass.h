@@ -1,0 +1,47 @@
+// What it takes to draw into the images of one eye: render pass, own depth and multisample images, framebuffers, a command
+// buffer and a fence. Knows nothing of OpenXR: the images may be a swapchain's or our own.
+#pragma once
+
+#include <vector>
+
+#include "samples/common/gpu.h"
+
+namespace samples {
+
+// A render pass into one colour image that is left in COLOR_ATTACHMENT_OPTIMAL, the layout in which OpenXR takes it back.
+// With samples > 1 it draws into a multisample image and resolves; the mean is taken of linear light, as a camera would.
+struct PassFormat {
+    VkFormat colour = VK_FORMAT_UNDEFINED;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+    bool depth = false;
+};
+
+OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format);
+
+class EyePass {
+public:
+    // `images` (colour attachments of `format.colour` and `extent`) stay the caller's.
+    EyePass(const Gpu& gpu, const PassFormat& format, VkRenderPass render_pass, VkExtent2D extent, const std::vector<VkImage>& images);
+    EyePass(EyePass&&) = default;
+
+    // Waits until the previous picture of this eye is done, so that what `record` reads may be rewritten.
+    void wait() const;
+    // Records a render pass over image number `index`, cleared to black and depth 1, and submits it without waiting.
+    void draw(std::uint32_t index, const std::function<void(VkCommandBuffer)>& record) const;
+
+    VkExtent2D extent() const { return extent_; }
+
+private:
+    const Gpu* gpu_;
+    PassFormat format_;
+    VkRenderPass render_pass_;
+    VkExtent2D extent_;
+    Image multisample_;
+    Image depth_;
+    std::vector<OwnedImageView> views_;
+    std::vector<OwnedFramebuffer> framebuffers_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;  // freed with the Gpu's command pool
+    OwnedFence done_;
+};
+
+}  // namespace samples

@@ -1,0 +1,298 @@
+#include "samples/demo/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include "samples/demo/emitter.frag.h"
+#include "samples/demo/office.vert.h"
+#include "samples/demo/surface.frag.h"
+
+namespace samples {
+
+namespace {
+
+constexpr float near_plane = 0.05F, far_plane = 200.0F;  // m
+constexpr std::uint32_t most_eyes = 4;
+
+struct Vertex {
+    glm::vec3 position;
+    glm::vec2 texture_at;
+    glm::vec2 lightmap_at;
+    std::array<std::uint8_t, 4> tint;  // linear, UNORM
+};
+
+struct ViewUniforms {  // as in office.vert
+    glm::mat4 clip_from_world;
+    std::array<glm::vec4, 4> channel_radiance;
+    glm::vec4 eye;
+};
+
+struct EmissionConstants {  // as in emitter.frag
+    glm::vec4 radiance_and_edge;
+    glm::vec4 centre_and_exponent;
+};
+
+std::array<std::uint8_t, 4> packed_tint(glm::vec3 tint) {
+    const auto code = [](float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0F, 1.0F) * 255.0F + 0.5F); };
+    return {code(tint.x), code(tint.y), code(tint.z), 255};
+}
+
+// What is added to light that is there already: stars and the moon to the sky's, lamps to what they reflect.
+bool is_added(Emitter emitter) {
+    return emitter == Emitter::stars || emitter == Emitter::moon || (emitter != Emitter::none && reflects(emitter));
+}
+
+// Order of drawing: what is near first, so that depth keeps the rest from being shaded; the sky, and last what is added to it.
+int drawing_order(Emitter emitter, Material material) {
+    if (is_added(emitter)) { return 4; }
+    if (emitter == Emitter::outdoors) { return 3; }
+    const bool walls = material == Material::plaster || material == Material::floor;
+    return walls ? 2 : 1;
+}
+
+glm::vec2 texture_coordinates(const Patch& patch, float s, float t) {
+    const glm::vec4& r = patch.texture;
+    if (patch.texture_turned) { return {std::lerp(r.x, r.z, t), std::lerp(r.y, r.w, s)}; }
+    return {std::lerp(r.x, r.z, s), std::lerp(r.y, r.w, t)};
+}
+
+glm::vec2 lightmap_coordinates(const LightmapBlock& block, const Lightmap& map, float s, float t) {
+    const glm::vec2 texel(static_cast<float>(block.x) + 0.5F + s * static_cast<float>(block.width - 1),
+                          static_cast<float>(block.y) + 0.5F + t * static_cast<float>(block.height - 1));
+    return texel / glm::vec2(map.width, map.height);
+}
+
+// `emits`: as an emitter, else as a surface. The tint is a surface's albedo, and the colour of an emitter that is no surface.
+void append_patch(const Patch& patch, bool emits, const LightmapBlock& block, const Lightmap& map, std::vector<Vertex>& vertices,
+                  std::vector<std::uint32_t>& indices) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    const auto columns = static_cast<std::uint32_t>(patch.columns), rows = static_cast<std::uint32_t>(patch.rows);
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        for (std::uint32_t column = 0; column <= columns; ++column) {
+            const float s = static_cast<float>(column) / static_cast<float>(columns),
+                        t = static_cast<float>(row) / static_cast<float>(rows);
+            vertices.push_back({patch.positions[row * (columns + 1) + column], texture_coordinates(patch, s, t),
+                                emits ? glm::vec2(patch.emission, 0) : lightmap_coordinates(block, map, s, t),
+                                packed_tint(emits && reflects(patch.emitter) ? glm::vec3(1) : patch.tint)});
+        }
+    }
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t at = first + row * (columns + 1) + column, above = at + columns + 1;
+            for (const std::uint32_t index : {at, at + 1, above + 1, at, above + 1, above}) { indices.push_back(index); }
+        }
+    }
+}
+
+}  // namespace
+
+glm::mat4 clip_from_world(const EyeView& view) {
+    const float width = view.tan_right - view.tan_left, height = view.tan_up - view.tan_down;
+    glm::mat4 clip(0);
+    clip[0][0] = 2 / width;
+    clip[1][1] = -2 / height;
+    clip[2][0] = (view.tan_right + view.tan_left) / width;
+    clip[2][1] = -(view.tan_up + view.tan_down) / height;
+    clip[2][2] = far_plane / (near_plane - far_plane);
+    clip[2][3] = -1;
+    clip[3][2] = near_plane * far_plane / (near_plane - far_plane);
+    const glm::mat4 world_from_eye = glm::translate(glm::mat4(1), view.position) * glm::mat4_cast(view.orientation);
+    return clip * glm::inverse(world_from_eye);
+}
+
+OfficeRenderer::OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
+                               VkSampleCountFlagBits samples, double lamp_peak_cd_m2)
+    : gpu_(gpu), pass_format_{format, samples, true}, lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
+    for (const glm::vec4& lux : lightmap.texels) { largest_illuminance_ = glm::max(largest_illuminance_, lux); }
+    for (const Patch& patch : office.patches) {
+        brightest_star_ = patch.emitter == Emitter::stars ? std::max(brightest_star_, patch.emission) : brightest_star_;
+    }
+    render_pass_ = create_render_pass(gpu, pass_format_);
+    upload_mesh(office, lightmap);
+    upload_textures(materials, lightmap);
+    create_pipelines();
+}
+
+void OfficeRenderer::upload_mesh(const Office& office, const Lightmap& lightmap) {
+    std::map<std::tuple<int, Emitter, Material>, std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < office.patches.size(); ++i) {
+        const Patch& patch = office.patches[i];
+        if (reflects(patch.emitter)) { groups[{drawing_order(Emitter::none, patch.material), Emitter::none, patch.material}].push_back(i); }
+        if (patch.emitter != Emitter::none) {
+            groups[{drawing_order(patch.emitter, patch.material), patch.emitter, patch.material}].push_back(i);
+        }
+    }
+    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    for (const auto& [key, members] : groups) {
+        const auto first = static_cast<std::uint32_t>(indices.size());
+        for (const std::size_t i : members) {
+            append_patch(office.patches[i], std::get<1>(key) != Emitter::none, lightmap.blocks[i], lightmap, vertices, indices);
+        }
+        batches_.push_back({std::get<1>(key), std::get<2>(key), first, static_cast<std::uint32_t>(indices.size()) - first});
+    }
+    vertices_ = create_buffer_from(gpu_, std::as_bytes(std::span(vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    indices_ = create_buffer_from(gpu_, std::as_bytes(std::span(indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+}
+
+void OfficeRenderer::upload_textures(const std::vector<Canvas>& materials, const Lightmap& lightmap) {
+    std::vector<std::byte> texels(lightmap.texels.size() * 8);
+    for (std::size_t i = 0; i < lightmap.texels.size(); ++i) {
+        const std::uint64_t halves = glm::packHalf4x16(lightmap.texels[i]);
+        std::memcpy(&texels[i * 8], &halves, 8);
+    }
+    const std::array levels{std::move(texels)};
+    lightmap_ = create_texture(gpu_, VK_FORMAT_R16G16B16A16_SFLOAT, {lightmap.width, lightmap.height}, levels);
+    repeat_ = create_sampler(gpu_, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+    clamp_ = create_sampler(gpu_, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+
+    constexpr auto both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    const std::array view_bindings{SetBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, both},
+                                   SetBinding{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT}};
+    view_layout_ = create_set_layout(gpu_, view_bindings);
+    material_layout_ = create_set_layout(gpu_, std::span(view_bindings).subspan(1));
+    const auto count = static_cast<std::uint32_t>(materials.size());
+    pool_ = create_descriptor_pool(gpu_, count + most_eyes, most_eyes, count + most_eyes);
+    for (const Canvas& canvas : materials) {
+        textures_.push_back(create_texture(gpu_, VK_FORMAT_R8G8B8A8_SRGB, {canvas.width(), canvas.height()}, canvas.srgb_levels()));
+        material_sets_.push_back(allocate_set(gpu_, pool_.get(), material_layout_.get()));
+        // Boards and plaster repeat; pictures must not bleed from one edge to the other.
+        const auto material = static_cast<Material>(textures_.size() - 1);
+        const bool repeats =
+            material == Material::wood || material == Material::floor || material == Material::plaster || material == Material::fabric;
+        write_image(gpu_, material_sets_.back(), 0, textures_.back().view.get(), repeats ? repeat_.get() : clamp_.get());
+    }
+}
+
+void OfficeRenderer::create_pipelines() {
+    const std::array sets{view_layout_.get(), material_layout_.get()};
+    const std::array constants{VkPushConstantRange{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(EmissionConstants)}};
+    pipeline_layout_ = create_pipeline_layout(gpu_, sets, constants);
+    const std::array<VkVertexInputAttributeDescription, 4> attributes{{
+        {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+        {1, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texture_at)},
+        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lightmap_at)},
+        {3, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(Vertex, tint)},
+    }};
+    PipelineDescription description;
+    description.vertex_spirv = office_vert_spv;
+    description.fragment_spirv = surface_frag_spv;
+    description.layout = pipeline_layout_.get();
+    description.render_pass = render_pass_.get();
+    description.samples = pass_format_.samples;
+    description.vertex_stride = sizeof(Vertex);
+    description.attributes = attributes;
+    description.depth_test = true;
+    description.depth_write = true;
+    description.cull_back_faces = true;
+    surface_ = create_pipeline(gpu_, description);
+    description.fragment_spirv = emitter_frag_spv;
+    emitter_ = create_pipeline(gpu_, description);
+    description.blend = Blend::add;
+    description.depth_write = false;
+    added_emitter_ = create_pipeline(gpu_, description);
+}
+
+void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& images) {
+    Buffer uniforms = create_buffer(gpu_, sizeof(ViewUniforms), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+    const VkDescriptorSet set = allocate_set(gpu_, pool_.get(), view_layout_.get());
+    write_uniform_buffer(gpu_, set, 0, uniforms.buffer.get(), 0, sizeof(ViewUniforms));
+    write_image(gpu_, set, 1, lightmap_.view.get(), clamp_.get());
+    eyes_.push_back({EyePass(gpu_, pass_format_, render_pass_.get(), extent, images), std::move(uniforms), set});
+}
+
+void OfficeRenderer::set_light(const Light& light, float unit_cd_m2) {
+    light_ = light;
+    unit_ = unit_cd_m2;
+}
+
+// Radiance of an emitter as linear RGB in cd/m².
+glm::vec3 OfficeRenderer::emitted(Emitter emitter, const Light& light) const {
+    const auto colours = channel_colours(light, lamp_peak_cd_m2_);
+    switch (emitter) {
+        case Emitter::outdoors:
+            return colours[light_sky];
+        case Emitter::ceiling_panel:
+            return colours[light_ceiling];
+        case Emitter::bulb:
+            return blackbody(2700) * static_cast<float>(lamp_peak_cd_m2_ * light.lamp);
+        case Emitter::moon:
+            return blackbody(4100) * static_cast<float>(moon_cd_m2 * light.moon);
+        case Emitter::power_led:
+            return glm::vec3(static_cast<float>(power_led_cd_m2));
+        case Emitter::stars:
+            return glm::vec3(1);  // each star has its own luminance
+        case Emitter::none:
+            break;
+    }
+    return glm::vec3(0);
+}
+
+static double largest(glm::vec3 rgb) { return std::max({rgb.x, rgb.y, rgb.z}); }
+
+double OfficeRenderer::brightest(const Light& light) const {
+    double bound = 0;
+    for (const Emitter emitter : {Emitter::outdoors, Emitter::ceiling_panel, Emitter::bulb, Emitter::moon, Emitter::power_led}) {
+        bound = std::max(bound, largest(emitted(emitter, light)));
+    }
+    bound = std::max(bound, double{brightest_star_} + largest(emitted(Emitter::outdoors, light)));
+    bound = std::max(bound, largest(emitted(Emitter::moon, light) + emitted(Emitter::outdoors, light)));
+    const auto colours = channel_colours(light, lamp_peak_cd_m2_);
+    double reflected = 0;  // by a white surface where each light is strongest
+    for (int i = 0; i < 4; ++i) { reflected += largest(colours[static_cast<std::size_t>(i)]) * largest_illuminance_[i] / std::numbers::pi; }
+    return std::max(bound, reflected);
+}
+
+void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, const EyeView& view) {
+    const Eye& eye = eyes_.at(index);
+    eye.pass.wait();  // before its uniforms change
+    ViewUniforms uniforms{};
+    uniforms.clip_from_world = clip_from_world(view);
+    const auto colours = channel_colours(light_, lamp_peak_cd_m2_);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        uniforms.channel_radiance[i] = glm::vec4(colours[i] / (std::numbers::pi_v<float> * unit_), 0);
+    }
+    uniforms.eye = glm::vec4(view.position, 1);
+    std::memcpy(eye.uniforms.mapped, &uniforms, sizeof(uniforms));
+    eye.pass.draw(image, [&](VkCommandBuffer commands) { record(commands, eye); });
+}
+
+void OfficeRenderer::record(VkCommandBuffer commands, const Eye& eye) const {
+    const VkBuffer vertex_buffer = vertices_.buffer.get();
+    const VkDeviceSize offset = 0;
+    vkCmdBindVertexBuffers(commands, 0, 1, &vertex_buffer, &offset);
+    vkCmdBindIndexBuffer(commands, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_layout_.get(), 0, 1, &eye.set, 0, nullptr);
+    VkPipeline bound = VK_NULL_HANDLE;
+    for (const Batch& batch : batches_) {
+        const VkPipeline pipeline = batch.emitter == Emitter::none ? surface_.get()
+                                    : is_added(batch.emitter)      ? added_emitter_.get()
+                                                                   : emitter_.get();
+        if (pipeline != bound) {
+            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+            bound = pipeline;
+        }
+        if (batch.emitter != Emitter::none) {
+            const bool bulb = batch.emitter == Emitter::bulb;
+            const EmissionConstants constants{
+                glm::vec4(emitted(batch.emitter, light_) / unit_, bulb ? static_cast<float>(bulb_edge_share) : 1.0F),
+                glm::vec4(bulb_centre_, static_cast<float>(bulb_profile_exponent()))};
+            vkCmdPushConstants(commands, pipeline_layout_.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(constants), &constants);
+        }
+        const VkDescriptorSet set = material_sets_[static_cast<std::size_t>(batch.material)];
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_layout_.get(), 1, 1, &set, 0, nullptr);
+        vkCmdDrawIndexed(commands, batch.index_count, 1, batch.first_index, 0, 0);
+    }
+}
+
+void OfficeRenderer::wait() const {
+    for (const Eye& eye : eyes_) { eye.pass.wait(); }
+}
+
+}  // namespace samples
