@@ -1,0 +1,19 @@
+// The extensions this runtime offers.
+#pragma once
+
+#include "entoptic/XR_ENTOPTICX_scene_luminance.h"
+#include "runtime/openxr.h"
+
+#include <cstdint>
+#include <span>
+
+namespace entoptic::runtime::api {
+
+struct Extension {
+    const char* name;
+    std::uint32_t version;
+};
+
+std::span<const Extension> extensions();
+
+}  // namespace entoptic::runtime::api

@@ -1,0 +1,172 @@
+#include "runtime/api/layers.h"
+
+#include "entoptic/XR_ENTOPTICX_scene_luminance.h"
+#include "runtime/api/verify.h"
+#include "runtime/objects/session.h"
+#include "runtime/objects/space.h"
+#include "runtime/objects/swapchain.h"
+
+#include <cmath>
+
+namespace entoptic::runtime::api {
+
+namespace {
+
+constexpr XrCompositionLayerFlags known_layer_flags = XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT |
+                                                      XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT |
+                                                      XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
+
+struct Context {
+    std::shared_ptr<Session> session;
+    XrTime time = 0;
+    LayerLuminance default_luminance;
+};
+
+Outcome resolve_luminance(const Context& context, const void* chain, LayerLuminance& luminance) {
+    luminance = context.default_luminance;
+    if (!context.session->instance().enabled(XR_ENTOPTICX_SCENE_LUMINANCE_EXTENSION_NAME)) return XR_SUCCESS;
+    const auto* scale = chained<XrCompositionLayerSceneLuminanceENTOPTICX>(chain, XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX);
+    if (!scale) return XR_SUCCESS;
+    const float value = scale->luminancePerUnit;
+    if (!(value >= XR_ENTOPTICX_SCENE_LUMINANCE_MIN && value <= XR_ENTOPTICX_SCENE_LUMINANCE_MAX)) {  // also for NaN
+        return invalid("luminancePerUnit is {} cd/m²; it must lie within {} and {}", value, XR_ENTOPTICX_SCENE_LUMINANCE_MIN,
+                       XR_ENTOPTICX_SCENE_LUMINANCE_MAX);
+    }
+    luminance = {value, 0.0f, LuminanceSource::layer_extension};
+    return XR_SUCCESS;
+}
+
+Outcome check_rectangle(const XrRect2Di& rect, const XrSwapchainCreateInfo& info) {
+    const std::int64_t right = std::int64_t(rect.offset.x) + rect.extent.width, bottom = std::int64_t(rect.offset.y) + rect.extent.height;
+    const bool inside = rect.offset.x >= 0 && rect.offset.y >= 0 && rect.extent.width >= 0 && rect.extent.height >= 0 &&
+                        right <= std::int64_t(info.width) && bottom <= std::int64_t(info.height);
+    if (inside) return XR_SUCCESS;
+    return error(XR_ERROR_SWAPCHAIN_RECT_INVALID, "imageRect {}x{} at ({}, {}) does not lie inside the swapchain's {}x{} texels",
+                 rect.extent.width, rect.extent.height, rect.offset.x, rect.offset.y, info.width, info.height);
+}
+
+Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& given, SubImage& image) {
+    std::shared_ptr<Swapchain> swapchain;
+    ENTOPTIC_XR_TRY(find(given.swapchain, swapchain));
+    if (swapchain->session() != context.session) return invalid("the layer's swapchain belongs to another session");
+    const XrSwapchainCreateInfo& info = swapchain->info();
+    if (given.imageArrayIndex >= info.arraySize) {
+        return invalid("imageArrayIndex {} is beyond the swapchain's {} slices", given.imageArrayIndex, info.arraySize);
+    }
+    ENTOPTIC_XR_TRY(check_rectangle(given.imageRect, info));
+    if ((info.usageFlags & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0) {
+        return error(XR_ERROR_LAYER_INVALID, "a depth swapchain cannot be shown as a layer");
+    }
+    ENTOPTIC_XR_TRY(swapchain->take_for_layer(image.image_index));
+    image.swapchain = swapchain->id();
+    image.array_layer = given.imageArrayIndex;
+    image.x = given.imageRect.offset.x;
+    image.y = given.imageRect.offset.y;
+    image.width = given.imageRect.extent.width;
+    image.height = given.imageRect.extent.height;
+    return XR_SUCCESS;
+}
+
+// `shown` is false when the space cannot be located.
+Outcome resolve_space(const Context& context, XrSpace handle, Layer& layer, bool& shown) {
+    std::shared_ptr<Space> space;
+    ENTOPTIC_XR_TRY(find(handle, space));
+    if (space->session() != context.session) return invalid("the layer's space belongs to another session");
+    layer.head_locked = space->is_view();
+    if (layer.head_locked) {
+        layer.anchor = space->root_from_space();
+        shown = true;
+        return XR_SUCCESS;
+    }
+    const PoseState state = space->world_from_space(context.time);
+    layer.anchor = state.pose;
+    shown = state.orientation_valid && state.position_valid;
+    return XR_SUCCESS;
+}
+
+Outcome resolve_fov(const XrFovf& given, LayerView& view) {
+    for (const float angle : {given.angleLeft, given.angleRight, given.angleUp, given.angleDown}) {
+        if (!(std::abs(angle) < 1.5707964f)) return invalid("a field of view angle is {} rad; it must lie between -π/2 and π/2", angle);
+    }
+    view.fov = {given.angleLeft, given.angleRight, given.angleUp, given.angleDown};
+    // A view without extent shows nothing; an empty image says so without a division by zero.
+    if (given.angleLeft == given.angleRight || given.angleUp == given.angleDown) view.image.width = view.image.height = 0;
+    return XR_SUCCESS;
+}
+
+Outcome resolve_projection(const Context& context, const XrCompositionLayerProjection& given, Layer& layer) {
+    layer.kind = LayerKind::projection;
+    if (given.viewCount != eye_count) return invalid("the projection layer has {} views; it must have {}", given.viewCount, eye_count);
+    ENTOPTIC_XR_TRY(require_pointer(given.views, "the projection layer's views"));
+    for (std::size_t eye = 0; eye < eye_count; ++eye) {
+        const XrCompositionLayerProjectionView& view = given.views[eye];
+        ENTOPTIC_XR_TRY(require(&view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, "a projection view"));
+        ENTOPTIC_XR_TRY(check_pose(view.pose));
+        ENTOPTIC_XR_TRY(resolve_sub_image(context, view.subImage, layer.views[eye].image));
+        ENTOPTIC_XR_TRY(resolve_fov(view.fov, layer.views[eye]));
+        layer.views[eye].space_from_view = to_pose(view.pose);
+    }
+    return XR_SUCCESS;
+}
+
+Outcome resolve_quad(const Context& context, const XrCompositionLayerQuad& given, Layer& layer) {
+    layer.kind = LayerKind::quad;
+    switch (given.eyeVisibility) {
+        case XR_EYE_VISIBILITY_BOTH:
+            layer.visibility = EyeVisibility::both;
+            break;
+        case XR_EYE_VISIBILITY_LEFT:
+            layer.visibility = EyeVisibility::left;
+            break;
+        case XR_EYE_VISIBILITY_RIGHT:
+            layer.visibility = EyeVisibility::right;
+            break;
+        default:
+            return invalid("{} is not an eye visibility", static_cast<int>(given.eyeVisibility));
+    }
+    ENTOPTIC_XR_TRY(check_pose(given.pose));
+    if (!std::isfinite(given.size.width) || !std::isfinite(given.size.height) || given.size.width < 0 || given.size.height < 0) {
+        return invalid("the quad's size {} x {} m must be finite and not negative", given.size.width, given.size.height);
+    }
+    ENTOPTIC_XR_TRY(resolve_sub_image(context, given.subImage, layer.views[0].image));
+    layer.views[1].image = layer.views[0].image;
+    layer.space_from_quad = to_pose(given.pose);
+    layer.quad_width_m = given.size.width;
+    layer.quad_height_m = given.size.height;
+    return XR_SUCCESS;
+}
+
+Outcome resolve_layer(const Context& context, const XrCompositionLayerBaseHeader* given, Layer& layer, bool& shown) {
+    if (!given) return error(XR_ERROR_LAYER_INVALID, "a layer is null");
+    const bool projection = given->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION, quad = given->type == XR_TYPE_COMPOSITION_LAYER_QUAD;
+    if (!projection && !quad) {
+        return error(XR_ERROR_LAYER_INVALID, "layer type {} is not offered; submit projection and quad layers",
+                     static_cast<int>(given->type));
+    }
+    if ((given->layerFlags & ~known_layer_flags) != 0) return invalid("layerFlags has unknown bits ({:#x})", given->layerFlags);
+    layer.blend_texture_source_alpha = (given->layerFlags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0;
+    layer.unpremultiplied_alpha = (given->layerFlags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0;
+    ENTOPTIC_XR_TRY(resolve_luminance(context, given->next, layer.luminance));
+    ENTOPTIC_XR_TRY(resolve_space(context, given->space, layer, shown));
+    return projection ? resolve_projection(context, *reinterpret_cast<const XrCompositionLayerProjection*>(given), layer)
+                      : resolve_quad(context, *reinterpret_cast<const XrCompositionLayerQuad*>(given), layer);
+}
+
+}  // namespace
+
+Outcome resolve_layers(const std::shared_ptr<Session>& session, const XrFrameEndInfo& info, std::vector<Layer>& layers) {
+    if (info.layerCount > max_layers) {
+        return error(XR_ERROR_LAYER_LIMIT_EXCEEDED, "{} layers are more than the {} of this system", info.layerCount, max_layers);
+    }
+    if (info.layerCount > 0) ENTOPTIC_XR_TRY(require_pointer(info.layers, "frameEndInfo->layers"));
+    const Context context{session, info.displayTime, session->host().default_luminance()};
+    for (std::uint32_t i = 0; i < info.layerCount; ++i) {
+        Layer layer;
+        bool shown = false;
+        ENTOPTIC_XR_TRY(resolve_layer(context, info.layers[i], layer, shown));
+        if (shown) layers.push_back(layer);
+    }
+    return XR_SUCCESS;
+}
+
+}  // namespace entoptic::runtime::api

@@ -1,0 +1,170 @@
+// Spaces and views.
+#include "runtime/objects/space.h"
+
+#include "runtime/api/call.h"
+#include "runtime/api/functions.h"
+#include "runtime/api/verify.h"
+#include "runtime/objects/session.h"
+
+#include <array>
+
+namespace entoptic::runtime::api {
+
+namespace {
+
+constexpr std::array reference_spaces{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE};
+
+Outcome check_reference_space(XrReferenceSpaceType type) {
+    if (std::find(reference_spaces.begin(), reference_spaces.end(), type) != reference_spaces.end()) return XR_SUCCESS;
+    const bool known = type == XR_REFERENCE_SPACE_TYPE_UNBOUNDED_MSFT || type == XR_REFERENCE_SPACE_TYPE_COMBINED_EYE_VARJO;
+    if (!known && type < 1000000000)
+        return error(XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "reference space {} is not offered", static_cast<int>(type));
+    if (known)
+        return error(XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "reference space {} belongs to an extension that is not offered",
+                     static_cast<int>(type));
+    return invalid("{} is not a reference space type", static_cast<int>(type));
+}
+
+XrSpaceLocationFlags location_flags(const PoseState& state) {
+    XrSpaceLocationFlags flags = 0;
+    if (state.orientation_valid) flags |= XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+    if (state.position_valid) flags |= XR_SPACE_LOCATION_POSITION_VALID_BIT;
+    if (state.orientation_tracked) flags |= XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+    if (state.position_tracked) flags |= XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+    return flags;
+}
+
+void write_velocity(const PoseState& state, XrSpaceVelocity& velocity) {
+    velocity.velocityFlags = 0;
+    velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
+    if (!state.velocity_valid) return;
+    velocity.angularVelocity = to_xr(state.angular_velocity);
+    velocity.velocityFlags |= XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
+    if (!state.position_valid) return;
+    velocity.linearVelocity = to_xr(state.linear_velocity);
+    velocity.velocityFlags |= XR_SPACE_VELOCITY_LINEAR_VALID_BIT;
+}
+
+// A pose whose parts are not valid must not look like one.
+Pose valid_parts(const PoseState& state) {
+    Pose pose = state.pose;
+    if (!state.orientation_valid) pose.orientation = {1, 0, 0, 0};
+    if (!state.position_valid) pose.position = glm::vec3(0);
+    return pose;
+}
+
+Outcome check_action_space(const Session& session, const XrActionSpaceCreateInfo& info, std::shared_ptr<Action>& action,
+                           std::optional<UserPath>& subaction) {
+    ENTOPTIC_XR_TRY(find(info.action, action));
+    if (&action->instance() != &const_cast<Session&>(session).instance()) return invalid("the action belongs to another instance");
+    if (action->type != XR_ACTION_TYPE_POSE_INPUT) {
+        return error(XR_ERROR_ACTION_TYPE_MISMATCH, "action \"{}\" is not a pose action", action->name);
+    }
+    if (info.subactionPath == XR_NULL_PATH) return XR_SUCCESS;
+    std::string text;
+    ENTOPTIC_XR_TRY(action->instance().paths().to_string(info.subactionPath, text));
+    subaction = parse_user_path(text);
+    if (subaction && action->declares(*subaction)) return XR_SUCCESS;
+    return error(XR_ERROR_PATH_UNSUPPORTED, "action \"{}\" was not created with the subaction path {}", action->name, text);
+}
+
+}  // namespace
+
+XrResult XRAPI_CALL enumerate_reference_spaces(XrSession handle, uint32_t capacity, uint32_t* count, XrReferenceSpaceType* spaces) {
+    return call("xrEnumerateReferenceSpaces", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        return two_call_values(capacity, count, spaces, reference_spaces);
+    });
+}
+
+XrResult XRAPI_CALL create_reference_space(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* space) {
+    return call("xrCreateReferenceSpace", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        ENTOPTIC_XR_TRY(require(info, XR_TYPE_REFERENCE_SPACE_CREATE_INFO, "createInfo"));
+        ENTOPTIC_XR_TRY(require_pointer(space, "space"));
+        ENTOPTIC_XR_TRY(check_reference_space(info->referenceSpaceType));
+        ENTOPTIC_XR_TRY(check_pose(info->poseInReferenceSpace));
+        return publish(std::make_shared<Space>(session, info->referenceSpaceType, to_pose(info->poseInReferenceSpace)),
+                       handle_value(handle), space);
+    });
+}
+
+XrResult XRAPI_CALL get_reference_space_bounds_rect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds) {
+    return call("xrGetReferenceSpaceBoundsRect", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        ENTOPTIC_XR_TRY(require_pointer(bounds, "bounds"));
+        ENTOPTIC_XR_TRY(check_reference_space(type));
+        *bounds = {0, 0};
+        return XR_SPACE_BOUNDS_UNAVAILABLE;  // nobody has measured the room
+    });
+}
+
+XrResult XRAPI_CALL create_action_space(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* space) {
+    return call("xrCreateActionSpace", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        ENTOPTIC_XR_TRY(require(info, XR_TYPE_ACTION_SPACE_CREATE_INFO, "createInfo"));
+        ENTOPTIC_XR_TRY(require_pointer(space, "space"));
+        std::shared_ptr<Action> action;
+        std::optional<UserPath> subaction;
+        ENTOPTIC_XR_TRY(check_action_space(*session, *info, action, subaction));
+        ENTOPTIC_XR_TRY(check_pose(info->poseInActionSpace));
+        return publish(std::make_shared<Space>(session, action, subaction, to_pose(info->poseInActionSpace)), handle_value(handle), space);
+    });
+}
+
+XrResult XRAPI_CALL destroy_space(XrSpace handle) {
+    return call("xrDestroySpace", handle, [&] { return destroy<Space>(handle_value(handle)); });
+}
+
+XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base_handle, XrTime time, XrSpaceLocation* location) {
+    return call("xrLocateSpace", handle, [&]() -> Outcome {
+        std::shared_ptr<Space> space, base;
+        ENTOPTIC_XR_TRY(find(handle, space));
+        ENTOPTIC_XR_TRY(find(base_handle, base));
+        ENTOPTIC_XR_TRY(require(location, XR_TYPE_SPACE_LOCATION, "location"));
+        if (space->session() != base->session()) return invalid("the two spaces belong to different sessions");
+        ENTOPTIC_XR_TRY(check_time(time));
+        TimeNs gaze_time = 0;
+        const PoseState state = locate(*space, *base, time, &gaze_time);
+        location->locationFlags = location_flags(state);
+        location->pose = to_xr(valid_parts(state));
+        if (auto* velocity = chained<XrSpaceVelocity>(location->next, XR_TYPE_SPACE_VELOCITY)) write_velocity(state, *velocity);
+        auto* sample = chained<XrEyeGazeSampleTimeEXT>(location->next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT);
+        if (sample && space->instance().enabled(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME)) sample->time = gaze_time;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult XRAPI_CALL locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewState* view_state, uint32_t capacity,
+                                 uint32_t* count, XrView* views) {
+    return call("xrLocateViews", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        ENTOPTIC_XR_TRY(require(info, XR_TYPE_VIEW_LOCATE_INFO, "viewLocateInfo"));
+        ENTOPTIC_XR_TRY(require(view_state, XR_TYPE_VIEW_STATE, "viewState"));
+        std::shared_ptr<Space> base;
+        ENTOPTIC_XR_TRY(find(info->space, base));
+        if (base->session() != session) return invalid("viewLocateInfo->space belongs to another session");
+        ENTOPTIC_XR_TRY(check_view_configuration(info->viewConfigurationType));
+        ENTOPTIC_XR_TRY(check_time(info->displayTime));
+        bool fill = false;
+        ENTOPTIC_XR_TRY(two_call(capacity, count, views, eye_count, fill));
+        for (int eye = 0; fill && eye < eye_count; ++eye) ENTOPTIC_XR_TRY(require(&views[eye], XR_TYPE_VIEW, "views"));
+        const Space view(session, XR_REFERENCE_SPACE_TYPE_VIEW, {});
+        const PoseState head = locate(view, *base, info->displayTime);
+        view_state->viewStateFlags = location_flags(head);  // the bits are the same
+        if (!fill) return XR_SUCCESS;
+        for (int eye = 0; eye < eye_count; ++eye) {
+            const EyeOptics& optics = session->host().headset().eyes[static_cast<std::size_t>(eye)];
+            views[eye].pose = to_xr(valid_parts(attached(head, optics.head_from_eye)));
+            views[eye].fov = {optics.fov.angle_left, optics.fov.angle_right, optics.fov.angle_up, optics.fov.angle_down};
+        }
+        return XR_SUCCESS;
+    });
+}
+
+}  // namespace entoptic::runtime::api

@@ -1,0 +1,25 @@
+// XR_KHR_vulkan_enable and XR_KHR_vulkan_enable2: their functions for the proc-address table, and the graphics binding of a session.
+#pragma once
+
+#include "runtime/objects/graphics.h"
+#include "runtime/objects/instance.h"
+#include "runtime/openxr.h"
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace entoptic::runtime::graphics {
+
+struct FunctionEntry {
+    std::string_view name;
+    const char* extension;
+    PFN_xrVoidFunction function;
+};
+std::span<const FunctionEntry> vulkan_functions();
+
+// From the chain of XrSessionCreateInfo. XR_ERROR_GRAPHICS_DEVICE_INVALID when there is no Vulkan binding of the device that
+// xrGetVulkanGraphicsDevice named; XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING.
+Outcome make_graphics_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device);
+
+}  // namespace entoptic::runtime::graphics

@@ -1,0 +1,236 @@
+#include "runtime/graphics/vulkan_images.h"
+
+#include <unistd.h>
+
+namespace entoptic::runtime::graphics {
+
+namespace {
+
+constexpr std::uint64_t longest_gpu_wait_ns = 20'000'000'000;
+
+Outcome failed(const char* what, VkResult result) {
+    const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return error(memory ? XR_ERROR_OUT_OF_MEMORY : XR_ERROR_RUNTIME_FAILURE, "{} failed in the application's Vulkan device (VkResult {})",
+                 what, static_cast<int>(result));
+}
+
+// File descriptors that nobody has taken over are closed.
+struct Descriptors {
+    std::vector<ImageMemory>& memories;
+    ~Descriptors() {
+        for (ImageMemory& memory : memories) {
+            if (memory.fd >= 0) ::close(memory.fd);
+        }
+    }
+};
+
+// The memory type of an import must be the exporter's: the lowest of the bits both sides allow.
+std::uint32_t memory_type(std::uint32_t bits) {
+    std::uint32_t index = 0;
+    while (index < 32 && (bits & (1u << index)) == 0) ++index;
+    return index;
+}
+
+}  // namespace
+
+VulkanImages::~VulkanImages() {
+    const DeviceDispatch& vk = context_->functions;
+    for (const auto& image : images_) {
+        static_cast<void>(wait(image->acquired, image->acquired_pending).code());
+        static_cast<void>(wait(image->released, image->released_pending).code());
+        if (image->acquired) vk.DestroyFence(context_->device, image->acquired, nullptr);
+        if (image->released) vk.DestroyFence(context_->device, image->released, nullptr);
+        if (image->image) vk.DestroyImage(context_->device, image->image, nullptr);
+        if (image->memory) vk.FreeMemory(context_->device, image->memory, nullptr);
+    }
+    if (pool_) vk.DestroyCommandPool(context_->device, pool_, nullptr);
+}
+
+Outcome VulkanImages::create_image(Image& image, const ImageMemory& memory) {
+    VkExternalMemoryImageCreateInfo external{};
+    external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO;
+    external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.pNext = &external;
+    info.flags = memory.vk_create_flags;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = static_cast<VkFormat>(memory.vk_format);
+    info.extent = {memory.width, memory.height, 1};
+    info.mipLevels = memory.mip_levels;
+    info.arrayLayers = memory.array_layers;
+    info.samples = static_cast<VkSampleCountFlagBits>(memory.samples);
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = memory.vk_usage;
+    info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    const VkResult result = context_->functions.CreateImage(context_->device, &info, nullptr, &image.image);
+    return result == VK_SUCCESS ? Outcome() : failed("vkCreateImage", result);
+}
+
+Outcome VulkanImages::import_memory(Image& image, ImageMemory& memory) {
+    const DeviceDispatch& vk = context_->functions;
+    VkMemoryRequirements requirements{};
+    vk.GetImageMemoryRequirements(context_->device, image.image, &requirements);
+    const std::uint32_t type = memory_type(requirements.memoryTypeBits & memory.memory_type_bits);
+    if (type == 32 || requirements.size > memory.size) {
+        return error(XR_ERROR_RUNTIME_FAILURE,
+                     "the compositor's image does not fit the application's device; both must be the same GPU and driver");
+    }
+    VkMemoryDedicatedAllocateInfo dedicated{};
+    dedicated.sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO;
+    dedicated.image = image.image;
+    VkImportMemoryFdInfoKHR import{};
+    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR;
+    import.pNext = &dedicated;
+    import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    import.fd = memory.fd;
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.pNext = &import;
+    allocate.allocationSize = memory.size;
+    allocate.memoryTypeIndex = type;
+    if (VkResult result = vk.AllocateMemory(context_->device, &allocate, nullptr, &image.memory); result != VK_SUCCESS) {
+        return failed("vkAllocateMemory of an imported image", result);
+    }
+    memory.fd = -1;  // the device's now
+    const VkResult result = vk.BindImageMemory(context_->device, image.image, image.memory, 0);
+    return result == VK_SUCCESS ? Outcome() : failed("vkBindImageMemory", result);
+}
+
+Outcome VulkanImages::import(std::vector<ImageMemory> memories) {
+    const Descriptors descriptors{memories};
+    if (memories.empty()) return error(XR_ERROR_RUNTIME_FAILURE, "the compositor gave no image");
+    const ImageMemory description = memories.front();
+    for (ImageMemory& memory : memories) {
+        if (memory.device_uuid != context_->device_uuid) {
+            return error(XR_ERROR_RUNTIME_FAILURE, "the compositor's image lies on another GPU than the application's");
+        }
+        Image& image = *images_.emplace_back(std::make_unique<Image>());
+        ENTOPTIC_XR_TRY(create_image(image, memory));
+        ENTOPTIC_XR_TRY(import_memory(image, memory));
+        const VkFenceCreateInfo info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+        for (VkFence* fence : {&image.acquired, &image.released}) {
+            const VkResult result = context_->functions.CreateFence(context_->device, &info, nullptr, fence);
+            if (result != VK_SUCCESS) return failed("vkCreateFence", result);
+        }
+    }
+    return make_commands(description);
+}
+
+Outcome VulkanImages::record(VkCommandBuffer commands, const VkImageMemoryBarrier& barrier) {
+    const DeviceDispatch& vk = context_->functions;
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    if (VkResult result = vk.BeginCommandBuffer(commands, &begin); result != VK_SUCCESS) return failed("vkBeginCommandBuffer", result);
+    vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                          &barrier);
+    const VkResult result = vk.EndCommandBuffer(commands);
+    return result == VK_SUCCESS ? Outcome() : failed("vkEndCommandBuffer", result);
+}
+
+Outcome VulkanImages::make_commands(const ImageMemory& description) {
+    const DeviceDispatch& vk = context_->functions;
+    VkCommandPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    pool.queueFamilyIndex = context_->queue_family;
+    if (VkResult result = vk.CreateCommandPool(context_->device, &pool, nullptr, &pool_); result != VK_SUCCESS) {
+        return failed("vkCreateCommandPool", result);
+    }
+    const auto format = static_cast<VkFormat>(description.vk_format);
+    const VkImageLayout attachment =
+        is_depth_format(format) ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    const VkAccessFlags everything = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    for (const auto& image : images_) {
+        VkCommandBufferAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        allocate.commandPool = pool_;
+        allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+        allocate.commandBufferCount = 3;
+        std::array<VkCommandBuffer, 3> buffers{};
+        if (VkResult result = vk.AllocateCommandBuffers(context_->device, &allocate, buffers.data()); result != VK_SUCCESS) {
+            return failed("vkAllocateCommandBuffers", result);
+        }
+        image->first_acquire = buffers[0];
+        image->acquire = buffers[1];
+        image->release = buffers[2];
+        VkImageMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+        barrier.image = image->image;
+        barrier.subresourceRange = {aspect_of(format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+        barrier.dstAccessMask = everything;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+        barrier.newLayout = attachment;
+        ENTOPTIC_XR_TRY(record(image->first_acquire, barrier));
+        barrier.oldLayout = VK_IMAGE_LAYOUT_GENERAL;
+        barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;
+        barrier.dstQueueFamilyIndex = context_->queue_family;
+        ENTOPTIC_XR_TRY(record(image->acquire, barrier));
+        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        barrier.dstAccessMask = 0;
+        barrier.oldLayout = attachment;
+        barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+        barrier.srcQueueFamilyIndex = context_->queue_family;
+        barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;
+        ENTOPTIC_XR_TRY(record(image->release, barrier));
+    }
+    return XR_SUCCESS;
+}
+
+Outcome VulkanImages::submit(VkCommandBuffer commands, VkFence fence, bool& pending) {
+    if (VkResult result = context_->functions.ResetFences(context_->device, 1, &fence); result != VK_SUCCESS)
+        return failed("vkResetFences", result);
+    VkSubmitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    std::lock_guard lock(context_->queue_mutex);
+    const VkResult result = context_->functions.QueueSubmit(context_->queue, 1, &info, fence);
+    if (result != VK_SUCCESS) return failed("vkQueueSubmit", result);
+    pending = true;
+    return XR_SUCCESS;
+}
+
+Outcome VulkanImages::wait(VkFence fence, bool& pending) {
+    if (!pending) return XR_SUCCESS;
+    const VkResult result = context_->functions.WaitForFences(context_->device, 1, &fence, VK_TRUE, longest_gpu_wait_ns);
+    if (result != VK_SUCCESS) return failed("the wait for the application's GPU work", result);
+    pending = false;
+    return XR_SUCCESS;
+}
+
+Outcome VulkanImages::enumerate(XrSwapchainImageBaseHeader* images) const {
+    auto* out = reinterpret_cast<XrSwapchainImageVulkanKHR*>(images);
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        if (out[i].type != XR_TYPE_SWAPCHAIN_IMAGE_VULKAN_KHR) {
+            return error(XR_ERROR_VALIDATION_FAILURE, "images[{}].type must be XR_TYPE_SWAPCHAIN_IMAGE_VULKAN_KHR", i);
+        }
+    }
+    for (std::size_t i = 0; i < images_.size(); ++i) out[i].image = images_[i]->image;
+    return XR_SUCCESS;
+}
+
+Outcome VulkanImages::acquire(std::uint32_t index) {
+    Image& image = *images_[index];
+    // Its commands are free again then.
+    ENTOPTIC_XR_TRY(wait(image.acquired, image.acquired_pending));
+    ENTOPTIC_XR_TRY(submit(image.used ? image.acquire : image.first_acquire, image.acquired, image.acquired_pending));
+    image.used = true;
+    return XR_SUCCESS;
+}
+
+Outcome VulkanImages::release(std::uint32_t index) {
+    Image& image = *images_[index];
+    std::lock_guard lock(image.released_mutex);
+    ENTOPTIC_XR_TRY(wait(image.released, image.released_pending));
+    return submit(image.release, image.released, image.released_pending);
+}
+
+Outcome VulkanImages::wait_released(std::uint32_t index) {
+    Image& image = *images_[index];
+    std::lock_guard lock(image.released_mutex);
+    return wait(image.released, image.released_pending);
+}
+
+}  // namespace entoptic::runtime::graphics
