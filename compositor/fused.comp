@@ -1,0 +1,48 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// Warp, lens and panel in one pass, for frames without a model of perception: layers to the codes of one eye's half of the panel.
+// One workgroup a tile that the lens shows; the other tiles stay black as the buffer was made.
+#include "compositor/layers.glsl"
+#include "compositor/panel.glsl"
+
+layout(local_size_x_id = 3, local_size_y_id = 4) in;
+
+layout(scalar, binding = 3) writeonly buffer Codes { uint codes[]; };
+layout(scalar, binding = 4) buffer Cleaned { uint cleaned[]; };   // pixels of each eye
+
+layout(scalar, push_constant) uniform Push {
+    uint view;
+    uint tiles;
+    PanelCurve curve;
+} push;
+
+void main() {
+    const uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (index >= push.tiles) return;
+    const uint view = push.view;
+    const uvec2 pixel = uvec2(tile_list[index] & 0xffffu, tile_list[index] >> 16) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
+    const uvec2 size = uvec2(geometry[view].width, geometry[view].height);
+    if (pixel.x >= size.x || pixel.y >= size.y) return;
+    const vec2 px = vec2(pixel) + 0.5;
+    bool changed = false;
+    const vec3 green = lens_coordinates(view, 1, px);
+    vec3 light = compose_layers(view, 1, green, changed);
+    float lowest = green.z;
+    if (!achromatic) {
+        const vec3 red = lens_coordinates(view, 0, px), blue = lens_coordinates(view, 2, px);
+        light.r = compose_layers(view, 0, red, changed).r;
+        light.b = compose_layers(view, 2, blue, changed).b;
+        lowest = min(lowest, min(red.z, blue.z));
+    }
+    // lens_visible(), with what is at hand.
+    const bool visible = dot(green.xy, green.xy) <= geometry[view].r2_cutoff && lowest > 0.05;
+    const uint at = (view * size.y + pixel.y) * size.x + pixel.x;
+    codes[at] = visible ? panel_codes(push.curve, light, at) : 0xff000000u;
+    if (clean_values) {
+        bool changed_now;
+        clean_scene_colour(light, changed_now);
+        if (visible && (changed || changed_now)) atomicAdd(cleaned[view], 1u);
+    }
+}
