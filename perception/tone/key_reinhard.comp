@@ -23,5 +23,6 @@ void main() {
     const vec4 pixel = scene[at];
     const float y = luminance(pixel.rgb);
     const float r = response(push.params, y, state[view].adaptation_cd_m2);
-    scene[at] = vec4(mix(vec3(push.black_cd_m2), vec3(push.white_cd_m2), scaled_colour(pixel.rgb, y, r)), pixel.w);
+    const vec3 light = push.black_cd_m2 + (push.white_cd_m2 - push.black_cd_m2) * scaled_colour(pixel.rgb, y, r);
+    scene[at] = vec4(min(light, vec3(push.white_cd_m2)), pixel.w);     // white times a rounded 1 may be a digit too much
 }

@@ -10,11 +10,12 @@ ENTOPTIC_MATH_BEGIN(perception::key_reinhard)
 // Key of a scene by its adaptation luminance A in cd/m²: 1.03 - 2/(2 + log10(A + 1)).
 FN real auto_key(real adaptation) { return LIT(1.03) - LIT(2.0) / (LIT(2.0) + log(adaptation + LIT(1.0)) * LIT(0.4342944819032518)); }
 
-// Relative display luminance 0..1 of a pixel of luminance y (cd/m²) for an eye adapted to A (cd/m²): L = key y / A, L/(1+L).
-// As printed: L = y A, the wrong sign of trap L1.
+// Relative display luminance 0..1 of a pixel of luminance y (cd/m²) for an eye adapted to A (cd/m², at least 1e-6: before the first
+// frame the state is 0): L = key y / A, L/(1+L). As printed: L = y A, the wrong sign of trap L1.
 FN real response(KeyReinhardParams p, real y, real adaptation) {
-    real scaled = real(p.key_scale) * auto_key(adaptation) * y / adaptation;
-    if (p.as_printed > 0.5) scaled = real(p.key_scale) * y * adaptation;
+    real a = max(adaptation, LIT(1e-6));
+    real scaled = real(p.key_scale) * auto_key(a) * y / a;
+    if (p.as_printed > 0.5) scaled = real(p.key_scale) * y * a;
     return scaled / (LIT(1.0) + scaled);
 }
 

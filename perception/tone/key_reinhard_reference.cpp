@@ -30,7 +30,7 @@ public:
         for (std::size_t i = 0; i < frame.image.data.size(); i += 3) {
             double* pixel = &frame.image.data[i];
             const double y = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
-            const double r = display_luminance(y, frame.adaptation_cd_m2, static_cast<double>(parameters[0]), parameters[1] > 0.5f);
+            const double r = display_luminance(y, std::max(frame.adaptation_cd_m2, 1e-6), static_cast<double>(parameters[0]), parameters[1] > 0.5f);
             double colour[3];
             for (int c = 0; c < 3; ++c) colour[c] = y > 0 ? pixel[c] * r / y : 0.0;
             const double s = saturation_in_gamut(colour, r);

@@ -1,0 +1,68 @@
+// A complex transform of 512 values by 64 invocations: Stockham, radix 8 three times, exchange in shared memory. Include after declaring
+// `twiddle`, a buffer of exp(-2 pi i n / 512) made in double; workgroups are (64, fft_lines): a line each.
+#ifndef ENTOPTIC_PERCEPTION_GLARE_FFT512_GLSL
+#define ENTOPTIC_PERCEPTION_GLARE_FFT512_GLSL
+
+#include "perception/glare/luidolt_spectral_gpu.h"
+
+// One more place after every 8, so that strides of 8 fall into different banks.
+shared vec2 fft_exchange[fft_lines][glare_n + glare_n / 8];
+
+uint fft_place(uint i) { return i + (i >> 3); }
+
+vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+
+// a times -i (forward, sign 1) or i (inverse, sign -1).
+vec2 quarter_turn(vec2 a, float sign) { return vec2(a.y, -a.x) * sign; }
+
+void fft4(inout vec2 a, inout vec2 b, inout vec2 c, inout vec2 d, float sign) {
+    const vec2 s = a + c, t = a - c, u = b + d, v = quarter_turn(b - d, sign);
+    a = s + u;
+    b = t + v;
+    c = s - u;
+    d = t - v;
+}
+
+void fft8(inout vec2 v[8], float sign) {
+    vec2 e0 = v[0], e1 = v[2], e2 = v[4], e3 = v[6];
+    vec2 o0 = v[1], o1 = v[3], o2 = v[5], o3 = v[7];
+    fft4(e0, e1, e2, e3, sign);
+    fft4(o0, o1, o2, o3, sign);
+    const float half_root = 0.70710678118654752;
+    o1 = (o1 + quarter_turn(o1, sign)) * half_root;
+    o2 = quarter_turn(o2, sign);
+    o3 = (quarter_turn(o3, sign) - o3) * half_root;
+    v[0] = e0 + o0;
+    v[1] = e1 + o1;
+    v[2] = e2 + o2;
+    v[3] = e3 + o3;
+    v[4] = e0 - o0;
+    v[5] = e1 - o1;
+    v[6] = e2 - o2;
+    v[7] = e3 - o3;
+}
+
+vec2 fft_turn(vec2 value, uint n, float sign) {
+    const vec2 w = twiddle[n];
+    return complex_product(value, vec2(w.x, w.y * sign));
+}
+
+// In: v[r] = value j + 64 r of the line. Out: v[r] = its transform at j + 64 r. sign 1 forward, -1 inverse (not divided by 512).
+// All invocations of the workgroup must call this.
+void fft512(inout vec2 v[8], uint j, uint line, float sign) {
+    fft8(v, sign);
+    barrier();
+    for (uint r = 0; r < 8; ++r) fft_exchange[line][fft_place(j * 8 + r)] = v[r];
+    barrier();
+    for (uint r = 0; r < 8; ++r) v[r] = fft_exchange[line][fft_place(j + 64 * r)];
+    for (uint r = 1; r < 8; ++r) v[r] = fft_turn(v[r], 8 * r * (j & 7), sign);
+    fft8(v, sign);
+    barrier();
+    for (uint r = 0; r < 8; ++r) fft_exchange[line][fft_place((j >> 3) * 64 + (j & 7) + 8 * r)] = v[r];
+    barrier();
+    for (uint r = 0; r < 8; ++r) v[r] = fft_exchange[line][fft_place(j + 64 * r)];
+    for (uint r = 1; r < 8; ++r) v[r] = fft_turn(v[r], r * j, sign);
+    fft8(v, sign);
+}
+
+#endif

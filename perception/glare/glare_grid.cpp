@@ -1,0 +1,209 @@
+#include "perception/glare/glare_grid.h"
+
+#include "perception/glare/luidolt_spectral_math.glsl"
+#include "shaders/geometry.glsl"
+
+#include <algorithm>
+#include <cmath>
+
+namespace entoptic::perception {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double middle = glare_n / 2;
+
+glm::dvec3 direction_at(const EyeGeometry& g, double x, double y) { return geometry::geometry_direction(g, {x, y}); }
+
+GlarePatch patch_towards(uint view, glm::dvec3 forward) {
+    GlarePatch patch;
+    patch.view = view;
+    patch.forward = glm::normalize(forward);
+    const glm::dvec3 helper = std::abs(patch.forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+    patch.right = glm::normalize(glm::cross(patch.forward, helper));
+    patch.up = glm::cross(patch.right, patch.forward);
+    return patch;
+}
+
+glm::dvec2 angles_in(const GlarePatch& patch, glm::dvec3 direction) {
+    return luidolt_spectral::grid_offset(patch.right, patch.up, patch.forward, 1.0, direction);
+}
+
+// What a view looks like, from samples of its visible pixels.
+struct ViewField {
+    GlarePatch patch;                 // about the middle of the field
+    double half_x = 0, half_y = 0;    // rad
+    double pixel = 0;                 // mean step, rad
+    double smallest_step = 1;         // rad
+};
+
+std::vector<glm::dvec2> visible_samples(const EyeGeometry& g) {
+    std::vector<glm::dvec2> samples;
+    constexpr int n = 48;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const glm::dvec2 px{0.5 + (g.width - 1.0) * i / n, 0.5 + (g.height - 1.0) * j / n};
+            if (geometry::geometry_visible(g, px)) samples.push_back(px);
+        }
+    if (samples.empty()) samples.push_back({g.width * 0.5, g.height * 0.5});
+    return samples;
+}
+
+void measure_pixels(const EyeGeometry& g, const std::vector<glm::dvec2>& samples, ViewField& field) {
+    for (const glm::dvec2& px : samples) {
+        const double across = glm::length(direction_at(g, px.x + 0.5, px.y) - direction_at(g, px.x - 0.5, px.y));
+        const double down = glm::length(direction_at(g, px.x, px.y + 0.5) - direction_at(g, px.x, px.y - 0.5));
+        field.pixel += std::sqrt(across * down) / static_cast<double>(samples.size());
+        field.smallest_step = std::min({field.smallest_step, across, down});
+    }
+}
+
+ViewField field_of(const EyeGeometry& g, uint view) {
+    ViewField field;
+    const std::vector<glm::dvec2> samples = visible_samples(g);
+    measure_pixels(g, samples, field);
+    glm::dvec3 forward{0};
+    for (const glm::dvec2& px : samples) forward += direction_at(g, px.x, px.y);
+    field.patch = patch_towards(view, glm::length(forward) > 1e-6 ? forward : glm::dvec3(0, 0, -1));
+    for (int iteration = 0; iteration < 4; ++iteration) {
+        glm::dvec2 low{10}, high{-10};
+        for (const glm::dvec2& px : samples) {
+            const glm::dvec2 at = angles_in(field.patch, direction_at(g, px.x, px.y));
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+        field.half_x = 0.5 * (high.x - low.x);
+        field.half_y = 0.5 * (high.y - low.y);
+        const glm::dvec2 centre = 0.5 * (low + high);
+        if (iteration < 3)
+            field.patch = patch_towards(view, field.patch.forward + std::tan(centre.x) * field.patch.right - std::tan(centre.y) * field.patch.up);
+    }
+    return field;
+}
+
+// A sphere: patches about the six axes. Light is taken up to 85 degrees from an axis, fading from 70 on so that a source that moves out of a
+// patch does not vanish at a step; a node takes its veil from the faces near it, blended.
+constexpr double sphere_reach = 85 * pi / 180, sphere_full = 70 * pi / 180;
+const glm::dvec3 sphere_axes[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+
+double smooth(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+double source_share(const GlarePatch& patch, glm::dvec3 d) {
+    const double theta = std::acos(std::clamp(glm::dot(patch.forward, d), -1.0, 1.0));
+    return smooth((sphere_reach - theta) / (sphere_reach - sphere_full));
+}
+// 1/sqrt(3) = 0.577 at a cube's corner; below 0.5 a face has no say.
+double face_share(const GlarePatch& patch, glm::dvec3 d) { return smooth((glm::dot(patch.forward, d) - 0.5) / 0.35); }
+
+void choose_patches(std::span<const EyeGeometry> views, double texel_px, GlareGrid& grid) {
+    double reach_x = 0, reach_y = 0, pixel = 0;
+    grid.smallest_step = 1;
+    for (uint view = 0; view < views.size(); ++view) {
+        const EyeGeometry& g = views[view];
+        if (g.kind == geometry_equirect) {
+            for (const glm::dvec3& axis : sphere_axes) grid.patches.push_back(patch_towards(view, axis));
+            grid.taps = 3;
+            reach_x = reach_y = sphere_reach;
+            pixel = std::max(pixel, pi / g.height);
+            grid.smallest_step = std::min(grid.smallest_step, pi / g.height);
+            continue;
+        }
+        const ViewField field = field_of(g, view);
+        grid.patches.push_back(field.patch);
+        reach_x = std::max(reach_x, field.half_x);
+        reach_y = std::max(reach_y, field.half_y);
+        pixel = std::max(pixel, field.pixel);
+        grid.smallest_step = std::min(grid.smallest_step, field.smallest_step);
+    }
+    grid.pixel_rad = pixel;
+    grid.pitch = std::max(2 * std::max(reach_x, reach_y) / (glare_occupied * glare_n), texel_px * pixel);
+    // Nodes lie up to 16 pixels outside the picture, texels of a tap one further.
+    const double rows = std::min(reach_y / grid.pitch + 4 + 16 * pixel / grid.pitch, middle - 2);
+    grid.first_row = static_cast<uint>(middle - std::ceil(rows));
+    grid.rows = 2 * static_cast<uint>(std::ceil(rows)) + 1;
+    grid.step = 1;
+    while (grid.step < 8 && 2 * grid.step * pixel <= grid.pitch * 1.01) grid.step *= 2;
+    grid.damping = 6 + 6 * std::pow(grid.step * pixel / grid.pitch, 2);
+}
+
+NodeTap tap_of(const GlareGrid& grid, uint patch_index, glm::dvec3 d, double weight) {
+    const glm::dvec2 at = angles_in(grid.patches[patch_index], d) / grid.pitch;
+    const double low_x = 2, high_x = glare_n - 3.0, low_y = grid.first_row + 1.0, high_y = grid.first_row + grid.rows - 2.0;
+    const auto within = [](double t, double low, double high) { return std::isfinite(t) ? std::clamp(t, low, high) : low; };
+    return {patch_index, static_cast<float>(within(middle + at.x, low_x, high_x)), static_cast<float>(within(middle + at.y, low_y, high_y)),
+            static_cast<float>(weight)};
+}
+
+struct PendingEntry {
+    uint texel;          // patch, row, column
+    SplatEntry entry;
+};
+
+void add_splat(const NodeTap& tap, uint node, std::vector<PendingEntry>& pending) {
+    const auto x = static_cast<uint>(tap.u + 0.5f), y = static_cast<uint>(tap.v + 0.5f);
+    const glm::dvec3 across = luidolt_spectral::spline_weights(static_cast<double>(tap.u) - x);
+    const glm::dvec3 down = luidolt_spectral::spline_weights(static_cast<double>(tap.v) - y);
+    for (uint k = 0; k < 9; ++k) {
+        const double w = across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * static_cast<double>(tap.weight);
+        if (w > 0) pending.push_back({(tap.patch_index * glare_n + y + k / 3 - 1) * glare_n + x + k % 3 - 1, {node, static_cast<float>(w)}});
+    }
+}
+
+// Counting sort by texel; inside a texel the order of nodes stays, so that sums have one order.
+void sort_splats(const std::vector<PendingEntry>& pending, GlareGrid& grid) {
+    grid.splat_offsets.assign(grid.patches.size() * glare_n * glare_n + 1, 0);
+    for (const PendingEntry& p : pending) ++grid.splat_offsets[p.texel + 1];
+    for (std::size_t i = 1; i < grid.splat_offsets.size(); ++i) grid.splat_offsets[i] += grid.splat_offsets[i - 1];
+    std::vector<uint> next(grid.splat_offsets.begin(), grid.splat_offsets.end() - 1);
+    grid.splat_entries.resize(pending.size());
+    for (const PendingEntry& p : pending) grid.splat_entries[next[p.texel]++] = p.entry;
+}
+
+// Taps by which a node of a sphere reads its veil: the nearest three faces, weights of sum 1.
+void sphere_taps(const GlareGrid& grid, uint first_patch, glm::dvec3 d, NodeTap (&taps)[3]) {
+    double shares[6], sum = 0;
+    for (uint f = 0; f < 6; ++f) sum += shares[f] = face_share(grid.patches[first_patch + f], d);
+    for (NodeTap& tap : taps) {
+        const uint best = static_cast<uint>(std::max_element(shares, shares + 6) - shares);
+        tap = tap_of(grid, first_patch + best, d, shares[best] / sum);
+        shares[best] = 0;
+    }
+}
+
+void place_nodes(std::span<const EyeGeometry> views, GlareGrid& grid) {
+    grid.nodes_x = (views[0].width - 1 + grid.step / 2) / grid.step + 3;
+    grid.nodes_y = (views[0].height - 1 + grid.step / 2) / grid.step + 3;
+    std::vector<PendingEntry> pending;
+    uint first_patch = 0;
+    for (uint view = 0; view < views.size(); ++view) {
+        const EyeGeometry& g = views[view];
+        const uint patches = g.kind == geometry_equirect ? 6 : 1;
+        for (uint i = 0; i < grid.nodes_x * grid.nodes_y; ++i) {
+            const double x = (static_cast<double>(i % grid.nodes_x) - 1) * grid.step + 0.5, y = (static_cast<double>(i / grid.nodes_x) - 1) * grid.step + 0.5;
+            const glm::dvec3 d = direction_at(g, x, y);
+            const uint node = view * grid.nodes_x * grid.nodes_y + i;
+            NodeTap taps[3] = {};
+            if (patches == 6) sphere_taps(grid, first_patch, d, taps);
+            else taps[0] = tap_of(grid, first_patch, d, 1);
+            grid.node_taps.insert(grid.node_taps.end(), taps, taps + grid.taps);
+            for (uint f = 0; f < patches; ++f) {
+                const double share = patches == 6 ? source_share(grid.patches[first_patch + f], d) : 1;
+                if (share > 0) add_splat(tap_of(grid, first_patch + f, d, share), node, pending);
+            }
+        }
+        first_patch += patches;
+    }
+    sort_splats(pending, grid);
+}
+
+}  // namespace
+
+GlareGrid make_glare_grid(std::span<const EyeGeometry> views, double texel_px) {
+    GlareGrid grid;
+    choose_patches(views, texel_px, grid);
+    place_nodes(views, grid);
+    return grid;
+}
+
+}  // namespace entoptic::perception

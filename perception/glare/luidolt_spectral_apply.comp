@@ -1,0 +1,44 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// out = C - leaves C + arrives + near, with the first two interpolated between the nodes by splines. An invocation does the pixels of one
+// column whose nearest row of nodes is the same.
+#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/luidolt_spectral_math.glsl"
+#include "shaders/scene_statistics.h"
+
+layout(local_size_x = 256) in;
+
+layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
+layout(scalar, binding = 1) readonly buffer Exchange { vec3 exchange[]; };     // node: arrives, leaves
+layout(scalar, binding = 2) readonly buffer NearLight { vec3 near_light[]; };
+layout(scalar, binding = 3) readonly buffer Flags { uint flags[]; };
+
+layout(scalar, push_constant) uniform PushBlock { LatticePush push; };
+
+void main() {
+    const uint x = gl_GlobalInvocationID.x, segment = gl_WorkGroupID.y, view = gl_WorkGroupID.z, step = push.step;
+    if (x >= push.width) return;
+    // Node n stands on pixel step (n - 1): with the nearest node `column + 1`, the three are column, column + 1, column + 2.
+    const uint column = (x + step / 2) / step;
+    const vec3 across = spline_weights((float(x) - float(column * step)) / float(step));
+    vec3 arrives[3], leaves[3];
+    for (uint j = 0; j < 3; ++j) {
+        const uint at = 2 * ((view * push.nodes_y + segment + j) * push.nodes_x + column);
+        arrives[j] = across.x * exchange[at] + across.y * exchange[at + 2] + across.z * exchange[at + 4];
+        leaves[j] = across.x * exchange[at + 1] + across.y * exchange[at + 3] + across.z * exchange[at + 5];
+    }
+    for (uint k = 0; k < step; ++k) {
+        const int y = int(segment * step + k) - int(step / 2);
+        if (y < 0 || y >= int(push.height)) continue;
+        const vec3 down = spline_weights((float(k) - float(step / 2)) / float(step));
+        const uint at = (view * push.height + uint(y)) * push.width + x;
+        const vec4 pixel = scene[at];
+        vec3 light = pixel.rgb * (1.0 - (down.x * leaves[0] + down.y * leaves[1] + down.z * leaves[2])) +
+                     (down.x * arrives[0] + down.y * arrives[1] + down.z * arrives[2]);
+        if (push.near != 0 && flags[(view * push.tiles_y + uint(y) / tile_height) * push.tiles_x + x / tile_width] != 0) light += near_light[at];
+        // The maximum also turns NaN into 0.
+        scene[at] = pixel.w > 0.0 ? vec4(max(light, vec3(0.0)), pixel.w) : pixel;
+    }
+}

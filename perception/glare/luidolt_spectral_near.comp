@@ -1,0 +1,91 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it, closed form,
+// without the texture that the far field has. One workgroup a tile; the kernel is made for the tile's own pixels per degree.
+#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/observer_state.h"
+#include "shaders/geometry.glsl"
+#include "shaders/scene_statistics.h"
+
+layout(local_size_x = 32, local_size_y = 8) in;
+const uint max_side = 2 * max_near_px + 1;
+
+layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
+layout(scalar, binding = 1) readonly buffer State { ObserverState state[]; };
+layout(scalar, binding = 2) readonly buffer NearTiles { uint near_count; uint near_list[]; };
+layout(scalar, binding = 3) readonly buffer Geometry { EyeGeometry geometry[]; };
+layout(scalar, binding = 4) readonly buffer Spectrum { SpectralTable spectrum; };
+layout(scalar, binding = 5) readonly buffer Halo { vec3 halo_table[]; };
+layout(scalar, binding = 6) writeonly buffer NearLight { vec3 near_light[]; };
+
+layout(scalar, push_constant) uniform PushBlock { NearPush push; };
+
+shared vec3 weights[max_side * max_side];
+
+vec3 kernel(float theta) {
+    const float sine = sin(theta / push.angle_scale);
+    const float place = sine * float(halo_table_size - 1);
+    const uint i = min(uint(place), halo_table_size - 2);
+    const vec3 halo = push.halo * mix(halo_table[i], halo_table[i + 1], place - float(i));
+    const vec3 tail = (1.0 - push.halo) * push.diffraction * aperture_tail(push.pupil_um, 1.0, sine) * spectrum.mean_lambda_um;
+    const float share = near_share(theta, push.near) * radius_share(theta, push.radius) * push.strength / (push.angle_scale * push.angle_scale);
+    return max(tail + halo, vec3(0.0)) * share;
+}
+
+// Integral of the kernel over the pixel at (dx, dy), sr; across and down are the steps of one pixel in direction.
+vec3 pixel_weight(ivec2 d, vec3 across, vec3 down, float solid_angle) {
+    const int samples = max(abs(d.x), abs(d.y)) <= 2 ? 8 : 3;
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < samples; ++j)
+        for (int i = 0; i < samples; ++i) {
+            const vec2 at = vec2(d) + (vec2(i, j) + 0.5) / float(samples) - 0.5;
+            sum += kernel(length(at.x * across + at.y * down));
+        }
+    return sum * (solid_angle / float(samples * samples));
+}
+
+vec3 excess(vec4 pixel, float threshold) { return max(pixel.rgb - threshold, vec3(0.0)); }
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex, per_view = push.tiles_x * push.tiles_y;
+    for (uint slot = gl_WorkGroupID.x; slot < near_count; slot += gl_NumWorkGroups.x) {
+        const uint tile = near_list[slot], view = tile / per_view;
+        const uvec2 corner = uvec2(tile % per_view % push.tiles_x, tile % per_view / push.tiles_x) * uvec2(tile_width, tile_height);
+        const EyeGeometry g = geometry[view];
+        const vec2 middle = min(vec2(corner) + vec2(tile_width, tile_height) * 0.5, vec2(push.width, push.height) - 0.5);
+        const vec3 across = (geometry_direction(g, middle + vec2(2, 0)) - geometry_direction(g, middle - vec2(2, 0))) * 0.25;
+        const vec3 down = (geometry_direction(g, middle + vec2(0, 2)) - geometry_direction(g, middle - vec2(0, 2))) * 0.25;
+        const float solid_angle = length(cross(across, down));
+        const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_near_px)));
+        const int side = 2 * radius + 1;
+        barrier();
+        for (uint i = lane; i < uint(side * side); i += tile_width * tile_height) {
+            const ivec2 d = ivec2(int(i) % side, int(i) / side) - radius;
+            weights[i] = d == ivec2(0) ? vec3(0.0) : pixel_weight(d, across, down, solid_angle);
+        }
+        barrier();
+        const uvec2 px = corner + gl_LocalInvocationID.xy;
+        if (px.x >= push.width || px.y >= push.height) continue;
+        const uint base = view * push.width * push.height, at = base + px.y * push.width + px.x;
+        const float threshold = push.near_from * state[view].adaptation_cd_m2;
+        const vec4 here = scene[at];
+        const vec3 own = excess(here, threshold);
+        vec3 sum = vec3(0.0);
+        for (int dy = -radius; dy <= radius; ++dy) {
+            const int y = int(px.y) + dy;
+            if (y < 0 || y >= int(push.height)) continue;
+            for (int dx = -radius; dx <= radius; ++dx) {
+                int x = int(px.x) + dx;
+                if (g.kind == geometry_equirect) x = (x + int(push.width)) % int(push.width);
+                if (x < 0 || x >= int(push.width)) continue;
+                const vec4 there = scene[base + uint(y) * push.width + uint(x)];
+                if (there.w > 0.0) sum += weights[(dy + radius) * side + dx + radius] * (excess(there, threshold) - own);
+            }
+        }
+        sum *= gaze_window(push.gaze[min(view, 1u)], geometry_direction(g, middle), push.window_sigma);
+        near_light[at] = here.w > 0.0 ? sum : vec3(0.0);
+    }
+}

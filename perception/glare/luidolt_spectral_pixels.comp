@@ -1,0 +1,60 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// Eye image to the node lattice: the light of every pixel, luminance times solid angle, is shared out between its nine nodes by splines
+// (the adjoint of what the pass "apply" does). A workgroup does 256 columns of pixels and 4 rows of nodes: sums along the columns first,
+// then across. A pixel belongs to the segment of its nearest node and counts for that node and both its neighbours.
+#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/luidolt_spectral_math.glsl"
+
+layout(local_size_x = 256) in;
+const uint node_rows = 4;
+
+layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
+layout(scalar, binding = 1) readonly buffer SolidAngles { float solid_angle[]; };     // sr, 0 where the lens shows nothing
+layout(scalar, binding = 2) writeonly buffer Nodes { vec3 nodes[]; };
+
+layout(scalar, push_constant) uniform PushBlock { LatticePush push; };
+
+shared vec3 columns[node_rows][256];
+
+void main() {
+    const uint lane = gl_LocalInvocationID.x, view = gl_WorkGroupID.z, step = push.step;
+    const uint nodes_a_group = 256 / step - 2;
+    const uint first_node = gl_WorkGroupID.x * nodes_a_group, first_row = gl_WorkGroupID.y * node_rows;
+    // Node n stands on pixel step (n - 1); its segment begins half a step before. Lane 0: the segment before that of the first node.
+    const int x = (int(first_node) - 2) * int(step) - int(step / 2) + int(lane);
+    const bool inside = x >= 0 && x < int(push.width);
+    const uint base = view * push.width * push.height + uint(max(x, 0));
+    vec3 before = vec3(0.0), here = vec3(0.0);
+    for (uint segment = 0; segment < node_rows + 2; ++segment) {
+        vec3 after = vec3(0.0);
+        const int start = (int(first_row + segment) - 2) * int(step) - int(step / 2);
+        for (uint k = 0; k < step; ++k) {
+            const int y = start + int(k);
+            if (!inside || y < 0 || y >= int(push.height)) continue;
+            const uint at = base + uint(y) * push.width;
+            const vec3 light = scene[at].rgb * solid_angle[at];
+            const vec3 w = spline_weights((float(k) - float(step / 2)) / float(step));
+            before += w.x * light;
+            here += w.y * light;
+            after += w.z * light;
+        }
+        if (segment > 1) columns[segment - 2][lane] = before;
+        before = here;
+        here = after;
+    }
+    barrier();
+    for (uint i = lane; i < nodes_a_group * node_rows; i += 256) {
+        const uint row = i / nodes_a_group, node = i % nodes_a_group;
+        vec3 sum = vec3(0.0);
+        for (uint k = 0; k < step; ++k) {
+            const vec3 w = spline_weights((float(k) - float(step / 2)) / float(step));
+            const uint at = node * step + k;
+            sum += w.z * columns[row][at] + w.y * columns[row][at + step] + w.x * columns[row][at + 2 * step];
+        }
+        if (first_node + node < push.nodes_x && first_row + row < push.nodes_y)
+            nodes[(view * push.nodes_y + first_row + row) * push.nodes_x + first_node + node] = sum;
+    }
+}
