@@ -1,0 +1,14 @@
+// The synthetic scene on which `entoptic bench` measures: a dim room with fine detail and colour, a lamp and a small glaring point.
+#pragma once
+
+#include "base/image.h"
+#include "shaders/eye_geometry.h"
+
+namespace entoptic::app {
+
+// RGB in cd/m². Every effect of the default preset has something to do in it.
+ImageF bench_scene(int width, int height);
+// Seen under 104 degrees, as in the headset, on a flat picture.
+EyeGeometry bench_geometry(int width, int height);
+
+}  // namespace entoptic::app

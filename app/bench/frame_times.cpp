@@ -1,0 +1,159 @@
+#include "app/bench/frame_times.h"
+
+#include "app/bench/bench_scene.h"
+#include "compositor/frame.h"
+#include "compositor/images.h"
+#include "drivers/driver.h"
+#include "perception/preset.h"
+
+#include <cstring>
+#include <unistd.h>
+
+namespace entoptic::app {
+namespace {
+
+using namespace compositor;
+
+constexpr int warm_up_frames = 2;
+
+void hand_over(gpu::Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to, std::uint32_t from_family,
+               std::uint32_t to_family) {
+    VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+    barrier.srcAccessMask = from == VK_IMAGE_LAYOUT_UNDEFINED ? 0 : VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = from == VK_IMAGE_LAYOUT_UNDEFINED ? VK_ACCESS_TRANSFER_WRITE_BIT : 0;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = from_family;
+    barrier.dstQueueFamilyIndex = to_family;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdPipelineBarrier(commands.handle(), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0,
+                         nullptr, 1, &barrier);
+}
+
+// A picture in a swapchain image, written and handed over as an application does (compositor/images.h).
+class Picture {
+public:
+    Picture(gpu::Device& device, SwapchainPool& pool) : device_(device), pool_(pool) {}
+    ~Picture() { pool_.destroy(image_.swapchain); }
+    Picture(const Picture&) = delete;
+    Picture& operator=(const Picture&) = delete;
+
+    Result<void> fill(const ImageF& rgb) {
+        SwapchainRequest request;
+        request.vk_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+        request.width = static_cast<std::uint32_t>(rgb.width);
+        request.height = static_cast<std::uint32_t>(rgb.height);
+        request.vk_usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        request.is_static = true;
+        ENTOPTIC_TRY(allocation, pool_.create(request));
+        for (const ImageMemory& memory : allocation.images) close(memory.fd);
+        image_ = {allocation.id, 0, 0, 0, 0, rgb.width, rgb.height};
+        return upload(rgb);
+    }
+    // Seen by both eyes from where they are.
+    Layer layer(const std::array<EyeOptics, eye_count>& eyes) const {
+        Layer layer;
+        layer.luminance = {1, 0, LuminanceSource::layer_extension};
+        for (std::size_t eye = 0; eye < eye_count; ++eye) layer.views[eye] = {eyes[eye].head_from_eye, eyes[eye].fov, image_};
+        return layer;
+    }
+
+private:
+    Result<void> upload(const ImageF& rgb) {
+        Layer named;
+        named.kind = LayerKind::quad;
+        named.views[0].image = image_;
+        const ImageUse use = pool_.use({named});
+        ENTOPTIC_TRY(image, use.find(image_));
+        const std::size_t pixels = std::size_t(rgb.width) * std::size_t(rgb.height);
+        ENTOPTIC_TRY(staging, gpu::Buffer::create(device_, pixels * sizeof(vec4), gpu::BufferKind::upload, "bench picture"));
+        const auto texels = staging.as<vec4>();
+        for (std::size_t i = 0; i < pixels; ++i) texels[i] = vec4(rgb.data[3 * i], rgb.data[3 * i + 1], rgb.data[3 * i + 2], 1);
+        ENTOPTIC_TRY(commands, gpu::Commands::create(device_, "bench picture"));
+        ENTOPTIC_CHECK(commands.begin());
+        hand_over(commands, image.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
+                  VK_QUEUE_FAMILY_IGNORED);
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {static_cast<std::uint32_t>(rgb.width), static_cast<std::uint32_t>(rgb.height), 1};
+        vkCmdCopyBufferToImage(commands.handle(), staging.handle(), image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        hand_over(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, device_.queue_family(),
+                  VK_QUEUE_FAMILY_EXTERNAL);
+        ENTOPTIC_CHECK(commands.submit());
+        return commands.wait();
+    }
+
+    gpu::Device& device_;
+    SwapchainPool& pool_;
+    SubImage image_;
+};
+
+class FrameBench {
+public:
+    FrameBench(gpu::Device& device, const Headset& headset, int frames)
+        : device_(device), headset_(headset), frames_(frames), pool_(device) {}
+
+    Result<double> median_ms(const std::string& preset, const ImageF& scene) {
+        ENTOPTIC_TRY(selection, perception::select(preset));
+        FramePathOptions options;
+        options.panel = {static_cast<std::uint32_t>(headset_.display.panel_width),
+                         static_cast<std::uint32_t>(headset_.display.panel_height)};
+        options.eyes = headset_.eyes;
+        options.selection = selection;
+        ENTOPTIC_TRY(path, FramePath::create(device_, options));
+        Picture picture(device_, pool_);
+        ENTOPTIC_CHECK(picture.fill(scene));
+        const std::vector<Layer> layers{picture.layer(headset_.eyes)};
+        std::vector<double> times;
+        for (int i = 0; i < frames_ + warm_up_frames; ++i) {
+            ENTOPTIC_TRY(outcome, path->compose(frame(layers, std::uint64_t(i)), pool_.use(layers)));
+            double ms = 0;
+            for (const StageMs& stage : outcome.gpu_ms) ms += stage.ms;
+            if (i >= warm_up_frames) times.push_back(ms);
+        }
+        return percentiles(std::move(times)).median;
+    }
+
+private:
+    FrameDescription frame(const std::vector<Layer>& layers, std::uint64_t index) const {
+        FrameDescription frame;
+        frame.index = index;
+        frame.layers = layers;
+        for (std::size_t eye = 0; eye < eye_count; ++eye) frame.head_from_eye[eye] = headset_.eyes[eye].head_from_eye;
+        frame.perception.dt_s = 1.0 / 90;
+        frame.perception.snap = index == 0;
+        frame.perception.index = index;
+        frame.perception.eyes.resize(eye_count);
+        return frame;
+    }
+
+    gpu::Device& device_;
+    const Headset& headset_;
+    int frames_;
+    SwapchainPool pool_;
+};
+
+}  // namespace
+
+Result<FrameTimes> frame_times(gpu::Device& device, int width, int height, int frames) {
+    drivers::DriverOptions wanted;
+    wanted.panel_width = width;
+    wanted.panel_height = height;
+    ENTOPTIC_TRY(headset, drivers::open_headset(wanted));
+    FrameBench bench(device, headset, frames);
+    const ImageF scene = bench_scene(width, height);
+    FrameTimes times;
+    ENTOPTIC_TRY(off, bench.median_ms("off", scene));
+    times.off_ms = off;
+    for (const perception::Preset& preset : perception::presets()) {
+        if (preset.name == "off") continue;
+        ENTOPTIC_TRY(ms, bench.median_ms(std::string(preset.name), scene));
+        times.preset_ms[std::string(preset.name)] = ms;
+    }
+    ENTOPTIC_TRY(idle, bench.median_ms(std::string(perception::default_preset), ImageF(width, height, 3, 20.0f)));
+    times.idle_ms = idle;
+    return times;
+}
+
+}  // namespace entoptic::app

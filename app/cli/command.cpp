@@ -1,0 +1,71 @@
+#include "app/cli/command.h"
+
+#include "base/log.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+
+namespace entoptic::app {
+namespace {
+
+constexpr int exit_usage = 2;
+
+int report(const Error& error) {
+    fmt::print(stderr, "entoptic: {}\n", error.message);
+    return static_cast<int>(error.kind);
+}
+
+int wrong_usage(const CLI::App& app, const std::string& message) {
+    const auto named = app.get_subcommands();
+    fmt::print(stderr, "entoptic: {}\nTry: entoptic {}--help\n", message, named.empty() ? "" : named[0]->get_name() + " ");
+    return exit_usage;
+}
+
+int parse_and_run(CLI::App& app, std::vector<std::string> arguments, const Action& action) {
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 wants them so
+    try {
+        app.parse(std::move(arguments));
+    } catch (const CLI::CallForHelp&) {
+        const auto named = app.get_subcommands();
+        fmt::print("{}", named.empty() ? app.help() : named[0]->help());
+        return 0;
+    } catch (const CLI::CallForVersion&) {
+        fmt::print("entoptic {}\n", ENTOPTIC_VERSION);
+        return 0;
+    } catch (const CLI::ParseError& e) { return wrong_usage(app, e.what()); }
+    if (!action) return wrong_usage(app, "name a command.");
+    const Result<int> outcome = action();
+    return outcome ? *outcome : report(outcome.error());
+}
+
+}  // namespace
+
+CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help) {
+    return command.add_option(name, values, help)->allow_extra_args(false);
+}
+
+int run_command_line(std::vector<std::string> arguments) {
+    // What follows `--` is somebody else's command line: it is never looked at.
+    const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
+    const std::vector<std::string> application(dashes == arguments.end() ? dashes : dashes + 1, arguments.end());
+    arguments.erase(dashes, arguments.end());
+
+    CLI::App app("Entoptic: an OpenXR runtime that shows what an eye would see", "entoptic");
+    app.set_version_flag("--version", ENTOPTIC_VERSION);
+    app.require_subcommand(0, 1);
+    Action action;
+    add_run(app, application, action);
+    add_simulate(app, action);
+    add_effects(app, action);
+    add_status(app, action);
+    add_bench(app, action);
+    add_config(app, action);
+    try {
+        return parse_and_run(app, std::move(arguments), action);
+    } catch (const std::exception& e) {
+        return report({ErrorKind::failed, fmt::format("an unexpected error stopped the command: {}. Please report it.", e.what())});
+    }
+}
+
+}  // namespace entoptic::app

@@ -1,0 +1,356 @@
+// `entoptic simulate`: the perception stage on calibrated radiance maps, without a headset and without OpenXR.
+#include "app/cli/command.h"
+#include "app/cli/output.h"
+#include "app/observer_file.h"
+#include "app/parse.h"
+#include "app/simulation/scene_input.h"
+#include "app/simulation/simulator.h"
+#include "app/simulation/trace.h"
+#include "base/image_io.h"
+#include "perception/pupil/watson_yellott.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+namespace entoptic::app {
+namespace {
+
+using namespace perception;
+
+constexpr double frame_rate = 90;         // of the eye's states between the wanted times
+constexpr double default_age = 30;        // years; facts/perception.md section 11
+constexpr double full_field_deg2 = 8495;  // a disc of 104 degrees, what a headset shows
+constexpr double longest_time_s = 3600;
+
+struct Options {
+    std::string input, output, projection, gaze = "0,0", trace, pupil = "model", adapted_to = "scene", at, preset{default_preset}, observer,
+                                           report;
+    std::vector<std::string> models, settings;
+    std::optional<double> fov_deg;
+    SceneOptions scene;
+    double fps = 0;
+    std::uint64_t seed = 1;
+    bool reference = false, photographic = false, json = false, progress = false;
+};
+
+// The options as values, checked.
+struct Plan {
+    std::vector<InputFile> files;
+    NumberedName output;
+    std::optional<Projection> projection;
+    EyeInput eye;  // gaze, and the pupil unless it is modelled
+    std::optional<double> pupil_mm, adapted_to;
+    std::optional<Trace> trace;
+    std::vector<double> times;  // of a still picture, s
+    Selection selection;
+};
+
+vec3 gaze_direction(double x_deg, double y_deg) {
+    constexpr double degree = 0.017453292519943295;
+    const double x = x_deg * degree, y = y_deg * degree;
+    return vec3(std::sin(x) * std::cos(y), std::sin(y), -std::cos(x) * std::cos(y));
+}
+
+bool writes(const NumberedName& name, const std::string& text, const char* extension) {
+    return std::filesystem::path(text).extension() == extension || std::filesystem::path(name.with(0, 0)).extension() == extension;
+}
+
+Result<void> plan_output(const Options& o, Plan& plan) {
+    ENTOPTIC_TRY(output, NumberedName::parse(o.output));
+    plan.output = output;
+    if (!writes(output, o.output, ".exr") && !writes(output, o.output, ".png"))
+        return usage_error(
+            fmt::format("'{}': the output's name must end in .exr (display light, cd/m²) or .png (as the display shows it).", o.output));
+    const auto folder = std::filesystem::path(o.output).parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        return failure(fmt::format("There is no folder '{}' to write to. Make it first.", folder.string()));
+    const bool sequence = plan.files.size() > 1 || o.fps > 0;
+    if (sequence && !output.has_number())
+        return usage_error("A numbered sequence needs a frame number in the output's name, such as out_%04d.png.");
+    if (!sequence && output.has_number()) return usage_error("One picture has no frame number: take the %d out of the output's name.");
+    if (plan.times.size() > 1 && !output.has_time()) return usage_error("Several times need %t in the output's name, such as out_%t.png.");
+    return {};
+}
+
+Result<void> plan_times(const Options& o, Plan& plan) {
+    const bool sequence = plan.files.size() > 1;
+    if (sequence && !(o.fps > 0)) return usage_error("A numbered sequence needs --fps, its frames a second.");
+    if (sequence && !o.at.empty()) return usage_error("--at goes with one picture; a sequence has times of its own.");
+    plan.times = {0};
+    if (o.at.empty()) return {};
+    const auto times = numbers_from(o.at);
+    if (!times) return usage_error(fmt::format("--at {}: write seconds with commas between them, such as 0,0.5,10.", o.at));
+    plan.times = *times;
+    std::sort(plan.times.begin(), plan.times.end());
+    if (plan.times.front() < 0 || plan.times.back() > longest_time_s)
+        return usage_error(fmt::format("--at {}: times lie between 0 and {:g} seconds after the scene appears.", o.at, longest_time_s));
+    return {};
+}
+
+Result<void> plan_eye(const Options& o, Plan& plan) {
+    const auto gaze = numbers_from(o.gaze);
+    if (!gaze || gaze->size() != 2 || std::abs((*gaze)[0]) > 180 || std::abs((*gaze)[1]) > 90)
+        return usage_error(fmt::format("--gaze {}: write X,Y in degrees from the centre, right and up positive.", o.gaze));
+    plan.eye.gaze_direction = gaze_direction((*gaze)[0], (*gaze)[1]);
+    if (o.pupil != "model") {
+        plan.pupil_mm = number_from(o.pupil);
+        if (!plan.pupil_mm || *plan.pupil_mm < 1.5 || *plan.pupil_mm > 9)
+            return usage_error(fmt::format("--pupil {}: write a diameter from 1.5 to 9 mm, or 'model'.", o.pupil));
+    }
+    if (o.adapted_to != "scene") {
+        plan.adapted_to = number_from(o.adapted_to);
+        if (!plan.adapted_to || *plan.adapted_to < 1e-6 || *plan.adapted_to > 1e8)
+            return usage_error(fmt::format("--adapted-to {}: write a luminance from 1e-6 to 1e8 cd/m², or 'scene'.", o.adapted_to));
+    }
+    if (o.trace.empty()) return {};
+    ENTOPTIC_TRY(trace, Trace::read(o.trace));
+    plan.trace = std::move(trace);
+    return {};
+}
+
+Result<Selection> plan_selection(const Options& o) {
+    ENTOPTIC_TRY(selection, select_effects(o.preset, o.models, o.settings, o.observer));
+    if (!o.photographic) return selection;
+    bool known = false;
+    for (Choice& choice : selection.choices)
+        for (std::size_t i = 0; i < choice.entry->parameters.size(); ++i)
+            if (std::string_view(choice.entry->parameters[i].name) == "photographic") {
+                choice.parameters[i] = 1;
+                known = true;
+            }
+    if (!known)
+        fmt::print(stderr,
+                   "entoptic: --photographic changes nothing here: these models scatter the whole scene already, not only what the display "
+                   "cannot show.\n");
+    return selection;
+}
+
+Result<Plan> make_plan(const Options& o) {
+    Plan plan;
+    if (o.projection == "equirect") plan.projection = Projection::equirect;
+    if (o.projection == "rectilinear") plan.projection = Projection::rectilinear;
+    ENTOPTIC_TRY(selection, plan_selection(o));
+    plan.selection = std::move(selection);
+    ENTOPTIC_CHECK(plan_eye(o, plan));
+    ENTOPTIC_TRY(files, input_files(o.input));
+    plan.files = std::move(files);
+    ENTOPTIC_CHECK(plan_times(o, plan));
+    ENTOPTIC_CHECK(plan_output(o, plan));
+    return plan;
+}
+
+class Simulation {
+public:
+    Simulation(const Options& options, Plan plan) : o_(options), plan_(std::move(plan)), progress_("frames", options.progress) {}
+
+    Result<Json> run() {
+        ENTOPTIC_CHECK(load(plan_.files[0]));
+        ENTOPTIC_CHECK(start());
+        ENTOPTIC_CHECK(plan_.files.size() > 1 ? run_sequence() : run_still());
+        return report();
+    }
+
+private:
+    Result<void> load(const InputFile& file) {
+        ENTOPTIC_TRY(scene, load_scene(file.path, o_.scene));
+        scene_ = std::move(scene);
+        return {};
+    }
+    Result<void> start() {
+        ENTOPTIC_TRY(geometry, scene_geometry(plan_.projection, o_.fov_deg, scene_.rgb.width, scene_.rgb.height));
+        geometry_ = geometry;
+        const SimulatorOptions options{geometry, display_, plan_.selection, o_.seed};
+        if (o_.reference) {
+            simulator_ = make_reference_simulator(options);
+        } else {
+            ENTOPTIC_TRY(device, gpu::Device::create({}));
+            device_ = std::move(device);
+            ENTOPTIC_TRY(simulator, make_gpu_simulator(*device_, options));
+            simulator_ = std::move(simulator);
+        }
+        first_mean_ = mean_luminance(scene_.rgb, geometry_);
+        simulator_->set_adaptation(plan_.adapted_to.value_or(std::clamp(first_mean_, 1e-6, 1e8)));
+        return {};
+    }
+    // The eye at `time_s`, looking at the picture that is loaded.
+    EyeInput eye_at(double time_s, double mean) const {
+        EyeInput eye = plan_.eye;
+        std::optional<double> pupil = plan_.pupil_mm;
+        if (plan_.trace) {
+            const TraceState state = plan_.trace->at(time_s);
+            eye.gaze_direction = gaze_direction(state.gaze_x_deg, state.gaze_y_deg);
+            eye.eyelid_open = state.blink ? 0.0f : 1.0f;
+            if (state.pupil_mm) pupil = state.pupil_mm;
+        }
+        eye.pupil_diameter_mm =
+            static_cast<float>(pupil ? *pupil : pupil_diameter_mm(mean, default_age, std::min(full_field_deg2, field_deg2(geometry_)), 2));
+        return eye;
+    }
+    Result<void> frame(double time_s, double dt_s, double mean, bool want_picture) {
+        FrameInput input;
+        input.dt_s = dt_s;
+        input.snap = frames_ == 0 && !plan_.adapted_to;
+        input.index = frames_++;
+        input.eyes = {eye_at(time_s, mean)};
+        last_eye_ = input.eyes[0];
+        return simulator_->frame(scene_.rgb, input, want_picture);
+    }
+    Result<void> run_still() {
+        ENTOPTIC_CHECK(frame(0, 0, first_mean_, plan_.times[0] == 0));
+        const auto total = static_cast<std::uint64_t>(std::ceil(plan_.times.back() * frame_rate));
+        double now = 0;
+        for (const double wanted : plan_.times) {
+            while (now < wanted) {
+                const double next = (std::floor(now * frame_rate + 1e-6) + 1) / frame_rate;
+                const double step_to = next > wanted - 1e-9 ? wanted : next;
+                ENTOPTIC_CHECK(frame(step_to, step_to - now, first_mean_, step_to == wanted));
+                now = step_to;
+                progress_.update(static_cast<std::uint64_t>(now * frame_rate), total);
+            }
+            ENTOPTIC_CHECK(write(plan_.files[0], wanted));
+        }
+        return {};
+    }
+    Result<void> run_sequence() {
+        for (std::size_t i = 0; i < plan_.files.size(); ++i) {
+            if (i > 0) ENTOPTIC_CHECK(load(plan_.files[i]));
+            if (scene_.rgb.width != static_cast<int>(geometry_.width) || scene_.rgb.height != static_cast<int>(geometry_.height))
+                return failure(fmt::format("'{}' has {} x {} pixels, but the sequence began with {} x {}.", plan_.files[i].path,
+                                           scene_.rgb.width, scene_.rgb.height, geometry_.width, geometry_.height));
+            const double time_s = double(i) / o_.fps;
+            ENTOPTIC_CHECK(frame(time_s, i == 0 ? 0 : 1 / o_.fps, i == 0 ? first_mean_ : mean_luminance(scene_.rgb, geometry_), true));
+            ENTOPTIC_CHECK(write(plan_.files[i], time_s));
+            progress_.update(i + 1, plan_.files.size());
+        }
+        return {};
+    }
+    Result<void> write(const InputFile& file, double time_s) {
+        const std::string path = plan_.output.with(file.number, time_s);
+        const ImageF shown = limited_to_display(simulator_->picture(), display_);
+        const double adaptation = decimal(simulator_->view().adaptation_cd_m2);
+        if (std::filesystem::path(path).extension() == ".png") {
+            ENTOPTIC_CHECK(write_png(path, display_codes(shown, display_)));
+        } else {
+            ExrAttributes attributes;
+            attributes.white_luminance = 1.0f;
+            attributes.text = {{"entopticVersion", ENTOPTIC_VERSION},
+                               {"entopticPreset", plan_.selection.preset},
+                               {"entopticQuantity", "display light, cd/m2"}};
+            attributes.numbers = {{"entopticTime", static_cast<float>(time_s)},
+                                  {"entopticPupilMm", last_eye_.pupil_diameter_mm},
+                                  {"entopticAdaptation", static_cast<float>(adaptation)},
+                                  {"entopticDisplayWhite", display_.white_cd_m2},
+                                  {"entopticDisplayBlack", display_.black_cd_m2}};
+            ENTOPTIC_CHECK(write_exr(path, shown, attributes));
+        }
+        outputs_.push_back(picture_json(file, time_s, path));
+        return {};
+    }
+    Json picture_json(const InputFile& file, double time_s, const std::string& path) const {
+        const ViewOutcome view = simulator_->view();
+        Json effects = Json::array();
+        for (const EffectOutcome& e : simulator_->effects())
+            effects.push_back(
+                {{"slot", e.slot}, {"model", e.model}, {"recorded", e.recorded}, {"gated", e.gated}, {"failed", e.failed}, {"why", e.why}});
+        return {{"input", file.path},
+                {"output", path},
+                {"time_s", time_s},
+                {"pupil_mm", decimal(last_eye_.pupil_diameter_mm)},
+                {"scene",
+                 {{"min_cd_m2", decimal(view.min_y)},
+                  {"mean_cd_m2", decimal(view.mean_y)},
+                  {"max_cd_m2", decimal(view.max_y)},
+                  {"pixels_cleaned", view.cleaned}}},
+                {"adaptation_cd_m2", decimal(view.adaptation_cd_m2)},
+                {"effects", effects}};
+    }
+    Json report() const {
+        static constexpr const char* kinds[] = {"lens", "rectilinear", "equirect"};
+        Json errors = Json::array();
+        for (const EffectOutcome& e : simulator_->effects())
+            if (!e.failed.empty()) errors.push_back(fmt::format("{}: {}", e.slot, e.failed));
+        return {{"version", ENTOPTIC_VERSION},
+                {"device", simulator_->device()},
+                {"preset", plan_.selection.preset},
+                {"projection", kinds[geometry_.kind]},
+                {"size", {geometry_.width, geometry_.height}},
+                {"photometry", {{"scale", scene_.cd_per_unit}, {"source", scene_.scale_source}}},
+                {"display", {{"white_cd_m2", decimal(display_.white_cd_m2)}, {"black_cd_m2", decimal(display_.black_cd_m2)}}},
+                {"frames", frames_},
+                {"pictures", outputs_},
+                {"errors", errors}};
+    }
+
+    const Options& o_;
+    Plan plan_;
+    Progress progress_;
+    Scene scene_;
+    EyeGeometry geometry_{};
+    DisplayRange display_;
+    double first_mean_ = 0;
+    std::unique_ptr<gpu::Device> device_;
+    std::unique_ptr<Simulator> simulator_;
+    std::uint64_t frames_ = 0;
+    EyeInput last_eye_;
+    Json outputs_ = Json::array();
+};
+
+// Said once, for people: pixels that had to be cleaned, and effects that failed.
+void tell(const Json& report) {
+    std::uint64_t cleaned = 0;
+    for (const Json& picture : report["pictures"]) cleaned += picture["scene"]["pixels_cleaned"].get<std::uint64_t>();
+    if (cleaned > 0)
+        fmt::print(stderr, "entoptic: {} pixels held NaN, an infinity, a negative or more than 1e8 cd/m² and were brought into range.\n",
+                   cleaned);
+    for (const Json& error : report["errors"]) fmt::print(stderr, "entoptic: an effect is off: {}\n", error.get<std::string>());
+}
+
+Result<int> simulate(const Options& options) {
+    ENTOPTIC_TRY(plan, make_plan(options));
+    ENTOPTIC_TRY(report, Simulation(options, std::move(plan)).run());
+    tell(report);
+    if (!options.report.empty()) ENTOPTIC_CHECK(write_json(options.report, report));
+    if (options.json) {
+        print_json(report);
+    } else {
+        for (const Json& picture : report["pictures"]) fmt::print("{}\n", picture["output"].get<std::string>());
+    }
+    return report["errors"].empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+    auto o = std::make_shared<Options>();
+    CLI::App* c = app.add_subcommand("simulate", "Show what an eye would see of an OpenEXR radiance map");
+    c->add_option("IN", o->input, "OpenEXR picture, or a numbered sequence such as in_%04d.exr")->required();
+    c->add_option("-o,--output", o->output,
+                  "Picture to write: .exr display light in cd/m², .png as the display shows it; %t is the time, %04d the frame")
+        ->required();
+    c->add_option("--fov", o->fov_deg, "Horizontal field of view of a flat picture, degrees");
+    c->add_option("--projection", o->projection, "rectilinear or equirect")->check(CLI::IsMember({"rectilinear", "equirect"}));
+    c->add_option("--luminance-scale", o->scene.luminance_scale, "cd/m² of RGB (1,1,1); default: the file's whiteLuminance");
+    c->add_option("--assume-white", o->scene.assume_white, "The same, for files without whiteLuminance");
+    c->add_option("--downscale", o->scene.downscale, "Average squares of K x K pixels first")->check(CLI::Range(1, 64));
+    c->add_option("--fps", o->fps, "Frames a second of a numbered sequence")->check(CLI::Range(0.01, 10000.0));
+    c->add_option("--gaze", o->gaze, "X,Y in degrees from the centre, right and up positive");
+    c->add_option("--trace", o->trace, "CSV file: time_s, gaze_x_deg, gaze_y_deg, pupil_mm, blink");
+    c->add_option("--pupil", o->pupil, "Pupil diameter in mm, or 'model' (from the scene's mean luminance)");
+    c->add_option("--adapted-to", o->adapted_to, "What the eye was adapted to before: cd/m², or 'scene'");
+    c->add_option("--at", o->at, "Seconds after the scene appears, such as 0,0.5,10");
+    c->add_option("--preset", o->preset, "Preset of effects (entoptic effects lists them)");
+    add_repeated(*c, "--model", o->models, "SLOT=NAME or SLOT=none");
+    add_repeated(*c, "--set", o->settings, "SLOT.parameter=value");
+    c->add_option("--observer", o->observer, "Person whose eye this is: observers/NAME.toml");
+    c->add_option("--seed", o->seed, "Seed of everything random");
+    c->add_flag("--reference", o->reference, "Double precision by the independent references, slow");
+    c->add_flag("--photographic", o->photographic, "For pictures, not headsets: scatter the whole scene");
+    c->add_option("--report", o->report, "Write what was done as JSON");
+    c->add_flag("--json", o->json, "Print the report on standard output");
+    c->add_flag("--progress", o->progress, "Tell progress even without a terminal");
+    c->callback([o, &action] { action = [o] { return simulate(*o); }; });
+}
+
+}  // namespace entoptic::app

@@ -1,0 +1,253 @@
+// labels: gpu
+// `entoptic simulate` as people call it: what comes out, and what is said when what goes in is bad.
+#include "app/testing/command_line.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace entoptic::app {
+namespace {
+
+class Simulate : public testing::CommandLineTest {
+protected:
+    static ImageF even(int width, int height, float cd_m2) { return {width, height, 3, cd_m2}; }
+    static ImageF lamp(int width, int height, float room, float cd_m2) {
+        ImageF image(width, height, 3, room);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                if (std::hypot(x - width / 2, y - height / 2) < 0.03 * width)
+                    for (int c = 0; c < 3; ++c) image.at(x, y, c) = cd_m2;
+        return image;
+    }
+    ImageF result(const std::string& name) const {
+        auto read = read_exr(path(name));
+        if (!read) throw std::runtime_error(read.error().message);
+        return read->rgb;
+    }
+    // Every pixel can be shown.
+    static void expect_displayable(const ImageF& image) {
+        for (const float v : image.data) ASSERT_TRUE(v >= 0.04f && v <= 130.0f) << v;
+    }
+    static float mean(const ImageF& image) {
+        double sum = 0;
+        for (const float v : image.data) sum += static_cast<double>(v);
+        return static_cast<float>(sum / static_cast<double>(image.data.size()));
+    }
+};
+
+TEST_F(Simulate, PresetOffClipsTheSceneToThePanel) {
+    ImageF scene(4, 1, 3, 20.0f);
+    scene.at(0, 0, 0) = 1e6f;
+    scene.at(1, 0, 1) = 1e-5f;
+    const auto outcome = entoptic({"simulate", picture("a.exr", scene), "-o", path("out.exr"), "--fov", "10", "--preset", "off"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, path("out.exr") + "\n");
+    const ImageF out = result("out.exr");
+    EXPECT_EQ(out.at(0, 0, 0), 130.0f);
+    EXPECT_EQ(out.at(1, 0, 1), 0.04f);
+    EXPECT_EQ(out.at(2, 0, 0), 20.0f);
+    EXPECT_EQ(read_exr(path("out.exr"))->white_luminance, 1.0f);
+}
+
+TEST_F(Simulate, PngIsWhatTheDisplayShows) {
+    const auto outcome = entoptic({"simulate", picture("a.exr", even(3, 2, 130)), "-o", path("out.png"), "--fov", "10", "--preset", "off"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto png = read_png(path("out.png"));
+    ASSERT_TRUE(png);
+    for (const auto code : png->data) EXPECT_EQ(code, 255);
+}
+
+TEST_F(Simulate, LampStarlightAndNothingGiveFinitePictures) {
+    picture("lamp.exr", lamp(96, 80, 1, 5e7f));
+    picture("stars.exr", lamp(96, 80, 1e-6f, 1e-3f));
+    picture("black.exr", even(96, 80, 0));
+    picture("sun.exr", lamp(96, 80, 3e4f, 1e8f));
+    for (const char* name : {"lamp", "stars", "black", "sun"}) {
+        const auto outcome = entoptic({"simulate", path(std::string(name) + ".exr"), "-o", path("out.exr"), "--fov", "60", "--json"});
+        ASSERT_EQ(outcome.status, 0) << name << ": " << outcome.err;
+        expect_displayable(result("out.exr"));
+        EXPECT_EQ(outcome.json()["pictures"][0]["scene"]["pixels_cleaned"], 0) << name;
+    }
+}
+
+TEST_F(Simulate, ANightSceneIsDarkerThanADayScene) {
+    picture("day.exr", lamp(64, 64, 1000, 3000));
+    picture("night.exr", lamp(64, 64, 1e-3f, 3e-3f));
+    for (const char* name : {"day", "night"})
+        ASSERT_EQ(
+            entoptic({"simulate", path(std::string(name) + ".exr"), "-o", path(std::string(name) + "_out.exr"), "--fov", "60"}).status, 0);
+    EXPECT_LT(mean(result("night_out.exr")), 0.7f * mean(result("day_out.exr")));
+}
+
+TEST_F(Simulate, PixelsThatAreNoLightAreCleanedAndCounted) {
+    ImageF scene = even(40, 40, 10);
+    scene.at(1, 1, 0) = std::numeric_limits<float>::quiet_NaN();
+    scene.at(2, 1, 1) = std::numeric_limits<float>::infinity();
+    scene.at(3, 1, 2) = -1;
+    const auto outcome = entoptic({"simulate", picture("a.exr", scene), "-o", path("out.exr"), "--fov", "60", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expect_displayable(result("out.exr"));
+    EXPECT_EQ(outcome.json()["pictures"][0]["scene"]["pixels_cleaned"], 3);
+    EXPECT_NE(outcome.err.find("3 pixels"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Simulate, AllNaNIsBlackNotACrash) {
+    const auto outcome =
+        entoptic({"simulate", picture("a.exr", even(8, 8, std::numeric_limits<float>::quiet_NaN())), "-o", path("out.exr"), "--fov", "60"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expect_displayable(result("out.exr"));
+}
+
+TEST_F(Simulate, OnePixelAndAFullSphereWork) {
+    EXPECT_EQ(entoptic({"simulate", picture("dot.exr", even(1, 1, 5)), "-o", path("dot_out.exr"), "--fov", "10"}).status, 0);
+    const auto sphere =
+        entoptic({"simulate", picture("sphere.exr", lamp(128, 64, 1, 1e4f)), "-o", path("out.exr"), "--json", "--gaze", "-120,30"});
+    ASSERT_EQ(sphere.status, 0) << sphere.err;
+    EXPECT_EQ(sphere.json()["projection"], "equirect");
+    expect_displayable(result("out.exr"));
+}
+
+TEST_F(Simulate, TheScaleComesFromTheFileOrTheUserAndIsNamed) {
+    picture("with.exr", even(4, 4, 1), 50.0f);
+    picture("without.exr", even(4, 4, 1), std::nullopt);
+    const std::vector<std::string> rest{"-o", path("out.exr"), "--fov", "10", "--preset", "off", "--json"};
+    const auto run = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "simulate");
+        arguments.insert(arguments.end(), rest.begin(), rest.end());
+        return entoptic(arguments);
+    };
+    const auto file = run({path("with.exr")});
+    EXPECT_EQ(file.json()["photometry"]["scale"], 50.0);
+    EXPECT_NE(file.json()["photometry"]["source"].get<std::string>().find("whiteLuminance"), std::string::npos);
+    EXPECT_EQ(run({path("with.exr"), "--luminance-scale", "20"}).json()["photometry"]["scale"], 20.0);
+    EXPECT_EQ(run({path("with.exr"), "--assume-white", "20"}).json()["photometry"]["scale"], 50.0);
+    EXPECT_EQ(run({path("without.exr"), "--assume-white", "20"}).json()["photometry"]["scale"], 20.0);
+    const auto none = run({path("without.exr")});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--assume-white"), std::string::npos);
+}
+
+TEST_F(Simulate, AdaptationGoesFromWhereItWasToTheScene) {
+    const std::string scene = picture("a.exr", even(48, 48, 100));
+    const auto outcome =
+        entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "60", "--adapted-to", "0.01", "--at", "0,0.1,2", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto report = outcome.json();
+    const auto pictures = report["pictures"];
+    ASSERT_EQ(pictures.size(), 3u);
+    EXPECT_NEAR(pictures[0]["adaptation_cd_m2"].get<double>(), 0.01, 1e-4);
+    EXPECT_GT(pictures[1]["adaptation_cd_m2"].get<double>(), 1);
+    EXPECT_NEAR(pictures[2]["adaptation_cd_m2"].get<double>(), 100, 1);
+    EXPECT_EQ(report["frames"], 181);
+    for (const char* name : {"out_0.exr", "out_0.1.exr", "out_2.exr"}) EXPECT_TRUE(testing::fs::exists(path(name))) << name;
+    EXPECT_GT(mean(result("out_0.exr")), mean(result("out_2.exr")));
+}
+
+TEST_F(Simulate, ASequenceIsNumberedLikeItsInput) {
+    for (const char* name : {"in_007.exr", "in_008.exr", "in_009.exr"}) picture(name, even(32, 32, 10));
+    const auto outcome = entoptic({"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60", "--fps", "30", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.json()["pictures"].size(), 3u);
+    for (const char* name : {"out_007.png", "out_008.png", "out_009.png"}) EXPECT_TRUE(testing::fs::exists(path(name))) << name;
+    expect_error(2, "--fps", {"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60"});
+}
+
+TEST_F(Simulate, ATraceMovesGazeAndPupil) {
+    write("trace.csv", "# an eye\ntime_s,gaze_x_deg,gaze_y_deg,pupil_mm,blink\n0,0,0,3,0\n1,10,5,5,0\n2,10,5,5,1\n");
+    const auto outcome = entoptic({"simulate", picture("a.exr", lamp(48, 48, 1, 1e4f)), "-o", path("out_%t.exr"), "--fov", "60", "--trace",
+                                   path("trace.csv"), "--at", "0,0.5,1", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NEAR(outcome.json()["pictures"][1]["pupil_mm"].get<double>(), 4, 1e-5);
+    write("bad.csv", "time_s,pupil_mm\n0,3\n1,17\n");
+    expect_error(1, "bad.csv:3", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
+    write("worse.csv", "time_s,colour\n");
+    expect_error(1, "'colour' is no column",
+                 {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("worse.csv")});
+}
+
+TEST_F(Simulate, ThePupilIsGivenOrModelled) {
+    const std::string dark = picture("dark.exr", even(16, 16, 1e-3f)), bright = picture("bright.exr", even(16, 16, 1e4f));
+    const auto pupil = [&](const std::string& scene, const std::string& option) {
+        return entoptic({"simulate", scene, "-o", path("out.exr"), "--fov", "100", "--pupil", option, "--json"})
+            .json()["pictures"][0]["pupil_mm"]
+            .get<double>();
+    };
+    EXPECT_EQ(pupil(dark, "2.5"), 2.5);
+    EXPECT_GT(pupil(dark, "model"), 6.5);
+    EXPECT_LT(pupil(bright, "model"), 2.5);
+}
+
+TEST_F(Simulate, TheReferenceAgreesWithTheGpu) {
+    const std::string scene = picture("a.exr", lamp(40, 32, 0.5f, 100));
+    for (const std::string extra : {"--seed", "--reference"}) {
+        std::vector<std::string> arguments{
+            "simulate", scene, "-o", path(extra == "--seed" ? "gpu.exr" : "double.exr"), "--fov", "50", "--model", "glare=none", extra};
+        if (extra == "--seed") arguments.push_back("1");
+        const auto outcome = entoptic(arguments);
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+    }
+    const ImageF gpu = result("gpu.exr"), reference = result("double.exr");
+    for (std::size_t i = 0; i < gpu.data.size(); ++i) EXPECT_NEAR(gpu.data[i] / reference.data[i], 1, 1e-3);
+}
+
+TEST_F(Simulate, TheSameCallGivesTheSameBits) {
+    const std::string scene = picture("a.exr", lamp(48, 48, 0.1f, 1e5f));
+    for (const char* out : {"a_out.exr", "b_out.exr"}) ASSERT_EQ(entoptic({"simulate", scene, "-o", path(out), "--fov", "60"}).status, 0);
+    EXPECT_EQ(result("a_out.exr").data, result("b_out.exr").data);
+}
+
+TEST_F(Simulate, BadPicturesAreNamedAndExplained) {
+    const std::string good = picture("good.exr", lamp(64, 64, 1, 10));
+    const std::string bytes = testing::text_of(good);
+    write("cut.exr", bytes.substr(0, bytes.size() / 2));
+    write("text.exr", "no picture at all");
+    std::string huge = bytes;
+    const std::int32_t far[2] = {2000000000, 2000000000};
+    std::memcpy(&huge[huge.find("dataWindow") + 11 + 6 + 4 + 8], far, sizeof far);
+    write("huge.exr", huge);
+    const auto call = [&](const std::string& in) {
+        return std::vector<std::string>{"simulate", path(in), "-o", path("out.exr"), "--fov", "60"};
+    };
+    expect_error(1, "cut short", call("cut.exr"));
+    expect_error(1, "not an OpenEXR", call("text.exr"));
+    expect_error(1, "million pixels", call("huge.exr"));
+    expect_error(1, "absent.exr", call("absent.exr"));
+    EXPECT_FALSE(testing::fs::exists(path("out.exr")));
+}
+
+TEST_F(Simulate, WrongOptionsAreUsageErrors) {
+    const std::string scene = picture("a.exr", even(8, 4, 1)), square = picture("s.exr", even(8, 8, 1));
+    const auto call = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"simulate", square, "-o", path("out.exr")});
+        return more;
+    };
+    expect_error(2, "--fov", call({}));
+    expect_error(2, "179", call({"--fov", "180"}));
+    expect_error(2, "--gaze", call({"--fov", "60", "--gaze", "1"}));
+    expect_error(2, "--pupil", call({"--fov", "60", "--pupil", "12"}));
+    expect_error(2, "--adapted-to", call({"--fov", "60", "--adapted-to", "dark"}));
+    expect_error(2, "%t", call({"--fov", "60", "--at", "0,1"}));
+    expect_error(2, "luidolt2020", call({"--fov", "60", "--preset", "nonsense"}));
+    expect_error(2, "glare", call({"--fov", "60", "--model", "glare=nonsense"}));
+    expect_error(2, "nonsense", call({"--fov", "60", "--observer", "nonsense"}));
+    expect_error(2, ".png", {"simulate", square, "-o", path("out.jpg"), "--fov", "60"});
+    expect_error(2, "--projection", call({"--projection", "fisheye"}));
+    expect_error(2, "equirect", call({"--projection", "equirect", "--fov", "60"}));
+    expect_error(1, "no folder", {"simulate", square, "-o", path("nowhere/out.png"), "--fov", "60"});
+    expect_error(2, "IN", {"simulate", "-o", path("out.png")});
+}
+
+TEST_F(Simulate, AnObserverChangesWhatIsChosenAndNoMore) {
+    write("config/entoptic/observers/tester.toml", "description = \"brighter\"\n[settings]\ntone.key_scale = 2\nnoslot.age = 80\n");
+    const std::string scene = picture("a.exr", even(16, 16, 10));
+    ASSERT_EQ(entoptic({"simulate", scene, "-o", path("plain.exr"), "--fov", "60"}).status, 0);
+    const auto outcome = entoptic({"simulate", scene, "-o", path("observer.exr"), "--fov", "60", "--observer", "tester"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_GT(mean(result("observer.exr")), 1.1f * mean(result("plain.exr")));
+    write("config/entoptic/observers/broken.toml", "[settings]\ntone.key_scale = \"much\"\n");
+    expect_error(2, "broken.toml:2", {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken"});
+}
+
+}  // namespace
+}  // namespace entoptic::app

@@ -1,0 +1,252 @@
+#include "app/host/host.h"
+
+#include "app/cli/output.h"
+#include "app/host/eye_size.h"
+#include "app/launch.h"
+#include "app/observer_file.h"
+#include "base/log.h"
+#include "compositor/targets/headless.h"
+#include "compositor/targets/window.h"
+#include "drivers/driver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace entoptic::app {
+namespace {
+
+constexpr std::chrono::milliseconds publish_every{500};
+constexpr std::size_t kept_errors = 100;
+
+// ---- The host that lives, for exit() with an instance still open ------------------------------------------------------------------
+
+std::mutex live_mutex;
+Host* live_host = nullptr;
+
+void finish_live_host() {
+    Host* host = nullptr;
+    {
+        const std::lock_guard lock(live_mutex);
+        std::swap(host, live_host);
+    }
+    if (host) host->finish();
+}
+void set_live_host(Host* host) {
+    static const int registered = std::atexit(finish_live_host);
+    (void)registered;
+    const std::lock_guard lock(live_mutex);
+    live_host = host;
+}
+void forget_live_host(const Host* host) {
+    const std::lock_guard lock(live_mutex);
+    if (live_host == host) live_host = nullptr;
+}
+
+// ---- From the configuration to the rooms' options ------------------------------------------------------------------------------------
+
+void tell_launcher(const Config& config, const std::string& message) {
+    if (config.launcher_directory.value.empty()) return;
+    std::ofstream(fmt::format("{}/{}", config.launcher_directory.value, failure_file), std::ios::app) << message << '\n';
+}
+
+Result<Headset> open_headset(const Config& config, TimeNs start_time) {
+    if (config.hmd.value == "vive-pro") return missing("This version has no driver for a real Vive Pro yet. Use hmd = \"virtual\".");
+    drivers::DriverOptions options;
+    options.name = config.hmd.value;
+    options.panel_width = config.panel.value.first;
+    options.panel_height = config.panel.value.second;
+    options.ipd_mm = config.ipd_mm.value;
+    options.script = config.script.value;
+    options.seed = config.seed.value;
+    options.ideal_tracker = config.ideal_tracker.value;
+    options.start_time = start_time;
+    return drivers::open_headset(options);
+}
+
+LayerLuminance luminance_of(const Config& config, const Photometry& panel) {
+    if (!config.luminance.value) return {panel.white_cd_m2 - panel.black_cd_m2, panel.black_cd_m2, LuminanceSource::default_sdr};
+    const bool command_line = config.luminance.origin == "command line";
+    return {static_cast<float>(*config.luminance.value), 0,
+            command_line ? LuminanceSource::command_line : LuminanceSource::application_profile};
+}
+
+compositor::WantedPictures wanted_pictures(const std::vector<std::string>& names) {
+    const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return {has("warp"), has("perceive"), has("lens"), has("panel"), has("seen")};
+}
+
+Result<std::unique_ptr<compositor::DisplayTarget>> make_target(gpu::Device& device, const SessionFacts& facts,
+                                                               compositor::PictureSize panel) {
+    if (facts.config.target.value == "headless") return compositor::make_headless_target();
+    return compositor::make_window_target(device, {panel, fmt::format("Entoptic: {}", facts.application.name), false});
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Host>> Host::create(const ApplicationIdentity& application, const Config& config) {
+    std::unique_ptr<Host> host(new Host);
+    ENTOPTIC_CHECK(host->start(application, config));
+    set_live_host(host.get());
+    return host;
+}
+
+Result<void> Host::start(const ApplicationIdentity& application, const Config& config) {
+    facts_.application = application;
+    facts_.config = config;
+    ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value));
+    facts_.selection = selection;
+    if (lockstep())
+        clock_ = std::make_unique<VirtualClock>();
+    else
+        clock_ = std::make_unique<MonotonicClock>();
+    ENTOPTIC_TRY(headset, open_headset(config, clock_->now()));
+    headset_ = std::move(headset);
+    facts_.hmd = headset_.display.name;
+    facts_.eye_tracker_present = headset_.eye_tracker->present();
+    facts_.eye_tracker = headset_.eye_tracker->description();
+    facts_.luminance = luminance_of(config, headset_.display.photometry);
+    ENTOPTIC_CHECK(open_compositor());
+    start_publishing();
+    return {};
+}
+
+Result<void> Host::open_compositor() {
+    const Config& config = facts_.config;
+    ENTOPTIC_TRY(device,
+                 gpu::Device::create({config.vulkan_validation.value, config.target.value == "window", config.vulkan_device.value}));
+    device_ = std::move(device);
+    compositor::ServiceOptions options;
+    options.path.panel = {static_cast<std::uint32_t>(headset_.display.panel_width),
+                          static_cast<std::uint32_t>(headset_.display.panel_height)};
+    ENTOPTIC_TRY(target, make_target(*device_, facts_, options.path.panel));
+    options.path.eye_scale = config.eye_scale.value;
+    options.path.display = {headset_.display.photometry.white_cd_m2, headset_.display.photometry.black_cd_m2};
+    options.path.selection = facts_.selection;
+    options.path.seed = config.seed.value;
+    options.path.stopwatch = &stopwatch_;
+    options.lockstep = lockstep();
+    options.frame_limit = config.frames.value;
+    options.dump.directory = config.dump_dir.value;
+    if (!config.dump_dir.value.empty()) options.dump.stages = wanted_pictures(config.dump_stages.value);
+    options.dump.every = static_cast<std::uint32_t>(std::min<std::uint64_t>(config.dump_every.value, UINT32_MAX));
+    ENTOPTIC_TRY(frames, compositor::CompositorService::create(*device_, *clock_, headset_, std::move(target), std::move(options)));
+    frames_ = std::move(frames);
+    watch_ = std::make_unique<LayerWatch>(*frames_);
+    return {};
+}
+
+Host::~Host() {
+    forget_live_host(this);
+    finish();
+}
+
+void Host::recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const {
+    const EyeSize size = app::recommended_eye_size(headset_, facts_.config.eye_scale.value);
+    width = size.width;
+    height = size.height;
+}
+
+void Host::report_error(const std::string& message) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (errors_.size() >= kept_errors || std::find(errors_.begin(), errors_.end(), message) != errors_.end()) return;
+        errors_.push_back(message);
+    }
+    log::error("{}", message);
+}
+
+std::vector<std::string> Host::errors(const compositor::RunReport& report) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> all = errors_;
+    all.insert(all.end(), report.errors.begin(), report.errors.end());
+    return all;
+}
+
+// ---- Status and report --------------------------------------------------------------------------------------------------------------
+
+void Host::start_publishing() {
+    if (auto status = StatusFile::create())
+        status_ = std::move(*status);
+    else
+        log::warn("{}", status.error().message);
+    publish();
+    publisher_ = std::thread([this] { publish_until_stopped(); });
+}
+
+void Host::publish_until_stopped() {
+    std::unique_lock lock(mutex_);
+    while (!stop_publishing_.wait_for(lock, publish_every, [this] { return finished_; })) {
+        lock.unlock();
+        publish();
+        lock.lock();
+    }
+}
+
+SessionFacts Host::facts_now() const {
+    SessionFacts facts = facts_;
+    facts.luminance = watch_->luminance().value_or(facts_.luminance);
+    return facts;
+}
+
+void Host::publish() {
+    const compositor::RunReport report = frames_->report();
+    const Json status = status_json(facts_now(), report, frames_->last_outcome(), errors(report));
+    if (const auto published = status_.publish(status); !published) log::debug("{}", published.error().message);
+    if (!facts_.config.launcher_directory.value.empty())
+        if (const auto written = write_json(fmt::format("{}/{}", facts_.config.launcher_directory.value, progress_file), status); !written)
+            log::debug("{}", written.error().message);
+}
+
+void Host::finish() {
+    if (!frames_) return;    // never came to life
+    frames_->end_session();  // its thread rests from now on: nothing of Vulkan runs while the process takes libraries apart
+    {
+        const std::lock_guard lock(mutex_);
+        if (finished_) return;
+        finished_ = true;
+        stop_publishing_.notify_all();
+    }
+    if (publisher_.joinable()) publisher_.join();
+    const compositor::RunReport report = frames_->report();
+    write_report(report);
+    judge(report);
+    status_ = {};
+}
+
+void Host::write_report(const compositor::RunReport& report) const {
+    if (facts_.config.report.value.empty()) return;
+    if (const auto written = write_json(facts_.config.report.value, report_json(facts_now(), report, errors(report))); !written) {
+        log::error("{}", written.error().message);
+        tell_launcher(facts_.config, written.error().message);
+    }
+}
+
+// Pictures that were asked for and did not come are the runtime's failure, whatever the application says.
+void Host::judge(const compositor::RunReport& report) const {
+    const std::vector<std::string> all = errors(report);
+    if (report.frames.submitted > 0 && report.frames.displayed == 0)
+        tell_launcher(facts_.config, fmt::format("No frame could be shown. {}", all.empty() ? "" : all.front()));
+    if (facts_.config.dump_dir.value.empty()) return;
+    for (const std::string& error : all)
+        if (error.find(facts_.config.dump_dir.value) != std::string::npos) tell_launcher(facts_.config, error);
+}
+
+Result<std::unique_ptr<RuntimeHost>> make_host(const ApplicationIdentity& application) {
+    auto config = load_config(ApplicationNames{application.name, application.engine});
+    if (!config) {
+        log::error("{}", config.error().message);
+        return forward_error(config.error());
+    }
+    auto host = Host::create(application, *config);
+    if (!host) {
+        log::error("{}", host.error().message);
+        tell_launcher(*config, host.error().message);
+        return forward_error(host.error());
+    }
+    return std::unique_ptr<RuntimeHost>(std::move(*host));
+}
+
+}  // namespace entoptic::app

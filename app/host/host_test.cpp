@@ -1,0 +1,159 @@
+// labels: gpu
+// The services behind an instance, without OpenXR: what the configuration asks for happens, and is told.
+#include "app/host/host.h"
+
+#include "app/launch.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace entoptic::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+class HostTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        fs::create_directories(folder_ / "launcher");
+        setenv("XDG_CONFIG_HOME", folder_.c_str(), 1);
+        setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void configure(std::vector<std::pair<std::string, std::string>> values) const {
+        values.insert(values.begin(), {{"panel", "\"64x72\""}, {"clock", "\"lockstep\""}, {"preset", "\"off\""}});
+        ASSERT_TRUE(write_overlay(path("overlay.toml"), {"", path("launcher"), values}));
+        setenv("ENTOPTIC_CONFIG", path("overlay.toml").c_str(), 1);
+    }
+    static Result<std::unique_ptr<RuntimeHost>> open() {
+        ApplicationIdentity application;
+        application.name = "host_test";
+        application.engine = "none";
+        application.extensions = {"XR_KHR_vulkan_enable"};
+        return make_host(application);
+    }
+    static void show(RuntimeHost& host, int frames) {
+        host.frames().begin_session();
+        for (int i = 0; i < frames; ++i) {
+            const FrameTiming timing = host.frames().wait_frame();
+            host.frames().begin_frame(timing.frame_id);
+            host.frames().submit_frame({timing.frame_id, timing.predicted_display_time, {}});
+        }
+        host.frames().end_session();
+    }
+    Json json_of(const std::string& name) const {
+        std::ifstream in(path(name));
+        return Json::parse(in, nullptr, false);
+    }
+    std::string failure_text() const {
+        std::ifstream in(path("launcher/failure"));
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::string status_path() const { return path("entoptic/" + std::to_string(getpid()) + ".json"); }
+
+private:
+    const fs::path folder_ = fs::temp_directory_path() / ("entoptic_host_test_" + std::to_string(getpid()));
+};
+
+TEST_F(HostTest, ShowsFramesAndReportsThem) {
+    configure({{"report", toml_string(path("report.json"))}, {"frames", "3"}, {"luminance", "250"}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    EXPECT_TRUE((*host)->lockstep());
+    EXPECT_EQ((*host)->default_luminance().cd_per_unit, 250);
+    EXPECT_EQ((*host)->default_luminance().source, LuminanceSource::command_line);
+    EXPECT_TRUE(fs::exists(status_path()));
+    show(**host, 3);
+    EXPECT_TRUE((*host)->frames().exit_wanted());
+    (*host)->report_error("a remark");
+    (*host)->report_error("a remark");
+    host->reset();
+    EXPECT_FALSE(fs::exists(status_path()));
+    const Json report = json_of("report.json");
+    for (const char* key : {"version", "device", "hmd", "clock", "application", "frames", "timing_ms", "latency_ms", "effects",
+                            "photometry", "state", "errors"})
+        EXPECT_TRUE(report.contains(key)) << key;
+    EXPECT_EQ(report["clock"], "lockstep");
+    EXPECT_EQ(report["application"]["name"], "host_test");
+    EXPECT_EQ(report["application"]["extensions"], Json({"XR_KHR_vulkan_enable"}));
+    EXPECT_EQ(report["frames"]["submitted"], 3);
+    EXPECT_EQ(report["frames"]["displayed"], 3);
+    EXPECT_EQ(report["frames"]["missed"], 0);
+    EXPECT_EQ(report["photometry"]["scale"], 250.0);
+    EXPECT_EQ(report["photometry"]["source"], "command line");
+    EXPECT_EQ(report["errors"], Json({"a remark"}));
+    EXPECT_FALSE(report["timing_ms"].empty());
+    EXPECT_EQ(failure_text(), "");
+}
+
+TEST_F(HostTest, TellsItsStatusWhileItLives) {
+    configure({});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    const auto running = running_runtimes();
+    ASSERT_EQ(running.size(), 1u);
+    EXPECT_EQ(running[0].pid, getpid());
+    const Json& status = running[0].status;
+    EXPECT_EQ(status["application"]["name"], "host_test");
+    EXPECT_TRUE(status["eye_tracker"]["present"]);
+    EXPECT_FALSE(status["effects"].empty());
+    EXPECT_NE(status["photometry"]["source"].get<std::string>().find("panel's white"), std::string::npos);
+    EXPECT_TRUE(json_of("launcher/status.json").is_object());
+}
+
+TEST_F(HostTest, TheSdrDefaultMapsCodesToThePanelsOwnLight) {
+    configure({});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    const LayerLuminance luminance = (*host)->default_luminance();
+    const Photometry panel = (*host)->headset().display.photometry;
+    EXPECT_EQ(luminance.source, LuminanceSource::default_sdr);
+    EXPECT_EQ(luminance.cd_per_unit + luminance.offset_cd, panel.white_cd_m2);
+    EXPECT_EQ(luminance.offset_cd, panel.black_cd_m2);
+    std::uint32_t width = 0, height = 0;
+    (*host)->recommended_eye_size(width, height);
+    EXPECT_GT(width, 64u);
+    EXPECT_LT(width, 80u);
+}
+
+TEST_F(HostTest, WhyItCannotStartIsToldToTheLauncher) {
+    configure({{"script", "\"no_such_script\""}});
+    const auto host = open();
+    ASSERT_FALSE(host);
+    EXPECT_NE(host.error().message.find("no_such_script"), std::string::npos) << host.error().message;
+    EXPECT_NE(failure_text().find("no_such_script"), std::string::npos);
+    configure({{"hmd", "\"vive-pro\""}});
+    const auto real = open();
+    ASSERT_FALSE(real);
+    EXPECT_EQ(real.error().kind, ErrorKind::missing);
+}
+
+TEST_F(HostTest, AReportThatCannotBeWrittenIsAFailure) {
+    configure({{"report", toml_string(path("nowhere/report.json"))}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    host->reset();
+    EXPECT_NE(failure_text().find("nowhere"), std::string::npos);
+}
+
+TEST_F(HostTest, DumpsAreWritten) {
+    configure({{"dump.dir", toml_string(path("dump"))}, {"dump.stages", "[\"panel\", \"warp\"]"}, {"dump.every", "2"}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    show(**host, 3);
+    host->reset();
+    for (const char* name : {"000000_left_panel.png", "000000_right_warp.exr", "000002_left_panel.png"})
+        EXPECT_TRUE(fs::exists(path("dump/") + name)) << name;
+    EXPECT_FALSE(fs::exists(path("dump/000001_left_panel.png")));
+    EXPECT_EQ(failure_text(), "");
+}
+
+}  // namespace
+}  // namespace entoptic::app

@@ -1,0 +1,109 @@
+#include "app/simulation/simulator.h"
+
+#include "shaders/colour_math.glsl"
+#include "shaders/geometry.glsl"
+#include "shaders/scene_statistics.h"
+
+#include <algorithm>
+
+namespace entoptic::app {
+namespace {
+
+using namespace perception;
+
+class ReferenceSimulator final : public Simulator {
+public:
+    explicit ReferenceSimulator(const SimulatorOptions& options) : options_(options) {
+        for (const Choice& choice : options_.selection.choices) models_.push_back(choice.entry->create_reference());
+    }
+    void set_adaptation(double cd_m2) override { adaptation_ = cd_m2; }
+    Result<void> frame(const ImageF& scene, const FrameInput& input, bool want_picture) override {
+        ReferenceFrame frame{cleaned(scene), options_.geometry, options_.display, input.eyes[0],
+                             input.dt_s,     input.snap,        adaptation_,      options_.seed};
+        if (want_picture) measure(frame.image);
+        for (std::size_t i = 0; i < models_.size(); ++i) {
+            const Choice& choice = options_.selection.choices[i];
+            if (models_[i] && (want_picture || choice.entry->slot == "adaptation")) models_[i]->apply(frame, choice.parameters);
+        }
+        adaptation_ = frame.adaptation_cd_m2;
+        view_.adaptation_cd_m2 = view_.target_cd_m2 = static_cast<float>(adaptation_);
+        if (want_picture) picture_ = convert<float>(frame.image);
+        return {};
+    }
+    ImageF picture() const override { return picture_; }
+    ViewOutcome view() const override { return view_; }
+    std::vector<EffectOutcome> effects() const override {
+        std::vector<EffectOutcome> outcomes;
+        for (std::size_t i = 0; i < models_.size(); ++i) {
+            const ModelEntry& entry = *options_.selection.choices[i].entry;
+            const std::string failed = models_[i] ? "" : "it has no reference";
+            outcomes.push_back(
+                {std::string(entry.slot), std::string(entry.name), failed.empty(), false, failed, failed.empty() ? "runs" : failed, 0});
+        }
+        return outcomes;
+    }
+    std::string device() const override { return "CPU, double precision"; }
+
+private:
+    ImageD cleaned(const ImageF& scene) {
+        ImageD out(scene.width, scene.height, 3);
+        const double most = static_cast<double>(max_scene_cd_m2);
+        view_.cleaned = 0;
+        for (std::size_t i = 0; i < out.data.size(); i += 3) {
+            bool changed = false;
+            for (std::size_t c = i; c < i + 3; ++c) {
+                const double v = static_cast<double>(scene.data[c]);
+                out.data[c] = v > 0 ? std::min(v, most) : 0;
+                changed |= !(v >= 0 && v <= most);
+            }
+            view_.cleaned += changed;
+        }
+        return out;
+    }
+    void measure(const ImageD& image) {
+        double low = 3e38, high = 0, sum = 0, sr = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) {
+                const double lum = colour::luminance({image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)});
+                const double w = geometry::geometry_solid_angle(options_.geometry, {x + 0.5, y + 0.5});
+                low = std::min(low, lum);
+                high = std::max(high, lum);
+                sum += w * lum;
+                sr += w;
+            }
+        view_.min_y = static_cast<float>(low);
+        view_.max_y = static_cast<float>(high);
+        view_.mean_y = static_cast<float>(sum / sr);
+    }
+
+    SimulatorOptions options_;
+    std::vector<std::unique_ptr<ReferenceModel>> models_;
+    double adaptation_ = 0;
+    ImageF picture_;
+    ViewOutcome view_;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulator> make_reference_simulator(const SimulatorOptions& options) {
+    return std::make_unique<ReferenceSimulator>(options);
+}
+
+ImageF limited_to_display(ImageF picture, const DisplayRange& display) {
+    // Written so that a NaN, which no model may leave, shows as black.
+    for (float& v : picture.data) v = v > display.black_cd_m2 ? std::min(v, display.white_cd_m2) : display.black_cd_m2;
+    return picture;
+}
+
+Image8 display_codes(const ImageF& picture, const DisplayRange& display) {
+    Image8 codes(picture.width, picture.height, picture.channels);
+    const double black = static_cast<double>(display.black_cd_m2), white = static_cast<double>(display.white_cd_m2);
+    for (std::size_t i = 0; i < codes.data.size(); ++i) {
+        const double linear = (static_cast<double>(picture.data[i]) - black) / (white - black);
+        const double code = 255 * colour::srgb_encode(linear > 0 ? std::min(linear, 1.0) : 0);
+        codes.data[i] = static_cast<std::uint8_t>(code + 0.5);
+    }
+    return codes;
+}
+
+}  // namespace entoptic::app
