@@ -13,7 +13,12 @@ constexpr std::uint32_t max_stages = 64;
 constexpr std::uint32_t sets_per_pool = 128;
 
 VkDescriptorType descriptor_type(BindingKind kind) {
-    return kind == BindingKind::storage_buffer ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    switch (kind) {
+    case BindingKind::storage_buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case BindingKind::uniform_buffer: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case BindingKind::sampled_image: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    }
+    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
 }  // namespace
@@ -148,7 +153,8 @@ Result<VkDescriptorSet> Commands::allocate_set(const Kernel& kernel) {
     info.pSetLayouts = &layout;
     for (;; ++current_pool_) {
         if (current_pool_ == descriptor_pools_.size()) {
-            const std::array<VkDescriptorPoolSize, 2> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, sets_per_pool * 8},
+            const std::array<VkDescriptorPoolSize, 3> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, sets_per_pool * 8},
+                                                             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets_per_pool * 2},
                                                              {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sets_per_pool * 4}}};
             VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
             pool.maxSets = sets_per_pool;

@@ -24,8 +24,8 @@ Result<Buffer> Buffer::create(const Device& device, std::size_t bytes, BufferKin
     result.size_ = bytes;
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes;
-    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     ENTOPTIC_VK(vkCreateBuffer(device.handle(), &info, nullptr, &result.buffer_));
     VkMemoryRequirements requirements{};
     vkGetBufferMemoryRequirements(device.handle(), result.buffer_, &requirements);
