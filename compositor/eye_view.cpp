@@ -8,22 +8,28 @@
 namespace entoptic::compositor {
 namespace {
 
-// Largest r² of green, in lens coordinates, of a direction that the rim of the panel shows in any colour.
-double rim_r2(const EyeGeometry& panel) {
-    const LensChannel& green = panel.channels[1];
-    const double radius = std::sqrt(double(panel.r2_cutoff));
-    double r2 = panel.r2_cutoff;
-    for (int step = 0; step < 64; ++step) {
-        const double angle = step * 6.283185307179586 / 64;
-        const glm::dvec2 at(radius * std::cos(angle) + double(green.centre.x),
-                            (radius * std::sin(angle) + double(green.centre.y)) * double(panel.aspect));
-        const glm::dvec2 px = (at * 0.5 + 0.5) * glm::dvec2(panel.width, panel.height);
-        for (const LensChannel& channel : {panel.channels[0], panel.channels[2]}) {
-            const glm::dvec2 p = geometry::lens_position(panel, green, lens_math::green_pixel_of_colour(panel, channel, px));
-            if (std::isfinite(p.x) && std::isfinite(p.y)) r2 = std::max(r2, glm::dot(p, p));
-        }
+// r² of one colour where it shows what lies `radius` (lens coordinates of the undistorted view) from its centre: by bisection, since
+// r/(1 + k0 r² + k1 r⁴ + k2 r⁶) grows up to the cut-off.
+double r2_at(const LensChannel& channel, double radius, double cutoff) {
+    double low = 0, high = std::sqrt(cutoff);
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high), denominator = geometry::lens_denominator(channel, middle * middle);
+        (denominator > 0.05 && middle / denominator <= radius ? low : high) = middle;
     }
-    return std::min(r2, 1.2 * double(panel.r2_cutoff));
+    return low * low;
+}
+
+// The device's cut-off, an r² for all colours, ends each colour at another direction: 4 degrees of blue alone on the example lens. Each is
+// cut where the first of them ends.
+glm::vec3 common_cutoff(const EyeGeometry& g, double cutoff) {
+    double radius = 1e9;
+    for (const LensChannel& channel : g.channels) {
+        const double denominator = geometry::lens_denominator(channel, cutoff);
+        if (denominator > 0.05) radius = std::min(radius, std::sqrt(cutoff) / denominator);
+    }
+    glm::vec3 r2;
+    for (int c = 0; c < 3; ++c) r2[c] = static_cast<float>(r2_at(g.channels[c], radius, cutoff));
+    return r2;
 }
 
 bool tile_is_shown(const EyeGeometry& g, std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1) {
@@ -33,7 +39,7 @@ bool tile_is_shown(const EyeGeometry& g, std::uint32_t x0, std::uint32_t y0, std
     const double nearest_x = std::clamp(centre_x, x0 + 0.5, x1 - 0.5), nearest_y = std::clamp(centre_y, y0 + 0.5, y1 - 0.5);
     for (const glm::dvec2 px : {glm::dvec2(nearest_x, nearest_y), glm::dvec2(x0 + 0.5, y0 + 0.5), glm::dvec2(x1 - 0.5, y0 + 0.5),
                                 glm::dvec2(x0 + 0.5, y1 - 0.5), glm::dvec2(x1 - 0.5, y1 - 0.5)})
-        if (geometry::lens_visible(g, px)) return true;
+        if (geometry::lens_shows(g, 0, px) || geometry::lens_shows(g, 1, px) || geometry::lens_shows(g, 2, px)) return true;
     return false;
 }
 
@@ -50,16 +56,16 @@ EyeGeometry panel_geometry(const EyeOptics& optics, std::uint32_t width, std::ui
     g.tan_up = std::tan(optics.fov.angle_up);
     g.tan_down = std::tan(optics.fov.angle_down);
     g.aspect = lens.aspect;
-    g.r2_cutoff = lens.r2_cutoff;
     g.focal = lens.focal;
     g.principal_point = lens.principal_point;
     for (std::size_t c = 0; c < 3; ++c) g.channels[c] = {lens.channels[c].centre, lens.channels[c].coefficients};
+    g.r2_cutoff = common_cutoff(g, double(lens.r2_cutoff));
     return g;
 }
 
 EyeGeometry eye_geometry(const EyeOptics& optics, std::uint32_t width, std::uint32_t height) {
     EyeGeometry g = panel_geometry(optics, width, height);
-    g.r2_cutoff = static_cast<float>(rim_r2(g) * (1 + 8.0 / std::max(width, 1u)));  // and two pixels for the filter
+    g.r2_cutoff *= 1 + 8.0f / static_cast<float>(std::max(width, 1u));  // two pixels more, for the filter at the rim
     return g;
 }
 

@@ -169,7 +169,10 @@ Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const Ima
     outcome.fused = options_.fuse && options_.selection.choices.empty() && !wanted.needs_stages();
     if (!outcome.fused) ENTOPTIC_CHECK(ensure_stages());
     ENTOPTIC_CHECK(commands_.begin());
-    ENTOPTIC_CHECK(record(frame, wanted, outcome.fused, times));
+    if (auto recorded = record(frame, wanted, outcome.fused, times); !recorded) {
+        vkEndCommandBuffer(commands_.handle());  // so that the next frame can begin
+        return forward_error(std::move(recorded.error()));
+    }
     ENTOPTIC_CHECK(commands_.submit());
     ENTOPTIC_CHECK(commands_.wait());
     times.stage_ended("gpu");

@@ -405,8 +405,8 @@ TEST(Frame, HiddenPixelsAreBlackAndNotWorkedOn) {
         for (int y = 0; y < 200; ++y)
             for (int x = 0; x < 180; ++x) {
                 const glm::dvec2 p = geometry::lens_position(g, g.channels[1], glm::dvec2(x + 0.5, y + 0.5));
-                if (std::abs(glm::dot(p, p) - double(g.r2_cutoff)) < 1e-4) continue;  // on the rim
-                wrong += picture.at(x, y, 1) != (geometry::lens_visible(g, glm::dvec2(x + 0.5, y + 0.5)) ? 255 : 0);
+                if (std::abs(glm::dot(p, p) - double(g.r2_cutoff.y)) < 1e-4) continue;  // on the rim
+                wrong += picture.at(x, y, 1) != (geometry::lens_shows(g, 1, glm::dvec2(x + 0.5, y + 0.5)) ? 255 : 0);
             }
         EXPECT_EQ(wrong, 0);
         EXPECT_EQ(picture.at(0, 0, 1), 0);

@@ -18,6 +18,9 @@ layout(scalar, push_constant) uniform Push {
     PanelCurve curve;
 } push;
 
+// lens_shows(), with what is at hand: position in lens coordinates and its denominator.
+bool shows(vec3 coordinates, float cutoff) { return dot(coordinates.xy, coordinates.xy) <= cutoff && coordinates.z > 0.05; }
+
 void main() {
     const uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (index >= push.tiles) return;
@@ -29,20 +32,21 @@ void main() {
     bool changed = false;
     const vec3 green = lens_coordinates(view, 1, px);
     vec3 light = compose_layers(view, 1, green, changed);
-    float lowest = green.z;
+    const vec3 cutoff = geometry[view].r2_cutoff;
+    bvec3 shown = bvec3(shows(green, cutoff.g));
     if (!achromatic) {
         const vec3 red = lens_coordinates(view, 0, px), blue = lens_coordinates(view, 2, px);
         light.r = compose_layers(view, 0, red, changed).r;
         light.b = compose_layers(view, 2, blue, changed).b;
-        lowest = min(lowest, min(red.z, blue.z));
+        shown = bvec3(shows(red, cutoff.r), shown.g, shows(blue, cutoff.b));
+        if (lens_near_edge(geometry[view], px) && any(shown))
+            shown = bvec3(lens_shows(geometry[view], 0, px), lens_shows(geometry[view], 1, px), lens_shows(geometry[view], 2, px));
     }
-    // lens_visible(), with what is at hand.
-    const bool visible = dot(green.xy, green.xy) <= geometry[view].r2_cutoff && lowest > 0.05;
     const uint at = (view * size.y + pixel.y) * size.x + pixel.x;
-    codes[at] = visible ? panel_codes(push.curve, light, at) : 0xff000000u;
+    codes[at] = panel_codes(push.curve, mix(vec3(0.0), light, shown), at);
     if (clean_values) {
         bool changed_now;
         clean_scene_colour(light, changed_now);
-        if (visible && (changed || changed_now)) atomicAdd(cleaned[view], 1u);
+        if (any(shown) && (changed || changed_now)) atomicAdd(cleaned[view], 1u);
     }
 }

@@ -68,8 +68,9 @@ void main() {
     light.r = filtered(green_pixel_of_colour(geometry[view], geometry[view].channels[0], px) * scale, 0);
     light.g = same_grid ? seen_at(ivec2(pixel), 1) : filtered(px * scale, 1);
     light.b = filtered(green_pixel_of_colour(geometry[view], geometry[view].channels[2], px) * scale, 2);
-    const bool visible = lens_visible(geometry[view], px);
+    for (int colour = 0; colour < 3; ++colour)
+        if (!lens_shows(geometry[view], colour, px)) light[colour] = 0.0;
     const uint at = (view * size.y + pixel.y) * size.x + pixel.x;
-    if (to_codes) codes[at] = visible ? panel_codes(push.curve, light, at) : 0xff000000u;
-    else panel_light[at] = visible ? light : vec3(0.0);
+    if (to_codes) codes[at] = panel_codes(push.curve, light, at);
+    else panel_light[at] = light;
 }

@@ -29,7 +29,8 @@ FN rvec2 green_pixel_of_colour(EyeGeometry g, LensChannel c, rvec2 px) {
         r = r - f / max(slope, LIT(0.1));
     }
     rvec2 s = target > LIT(1e-12) ? q * (r / target) : q;
-    rvec2 uv = rvec2((s.x + real(green.centre.x) + LIT(1.0)) * LIT(0.5), ((s.y + real(green.centre.y)) * real(g.aspect) + LIT(1.0)) * LIT(0.5));
+    rvec2 at = rvec2(s.x + real(green.centre.x), (s.y + real(green.centre.y)) * real(g.aspect));   // -1..1 across the panel
+    rvec2 uv = (at + LIT(1.0)) * LIT(0.5);
     return uv * rvec2(real(g.width), real(g.height));
 }
 

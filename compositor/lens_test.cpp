@@ -72,17 +72,29 @@ TEST(Lens, ThreeStepsFindGreensPixelOfAColour) {
 TEST(Lens, TheEyeImageReachesBeyondThePanelsRim) {
     const EyeOptics optics = testing::vive_pro_eyes()[0];
     const EyeGeometry panel = panel_geometry(optics, 720, 800), eye = eye_geometry(optics, 720, 800);
-    EXPECT_GT(eye.r2_cutoff, panel.r2_cutoff);
-    EXPECT_LT(eye.r2_cutoff, 1.1f * panel.r2_cutoff);
+    EXPECT_GT(eye.r2_cutoff.y, panel.r2_cutoff.y);
+    EXPECT_LT(eye.r2_cutoff.y, 1.1f * panel.r2_cutoff.y);
     for (double y = 0.5; y < 800; ++y)
         for (double x = 0.5; x < 720; ++x) {
-            if (!geometry::lens_visible(panel, {x, y})) continue;
             for (const int c : {0, 2}) {
+                if (!geometry::lens_shows(panel, c, {x, y})) continue;
                 const glm::dvec2 from = lens_math::green_pixel_of_colour(panel, panel.channels[c], {x, y});
                 if (from.x < 0 || from.y < 0 || from.x > 720 || from.y > 800) continue;
                 ASSERT_TRUE(geometry::lens_visible(eye, from)) << x << "," << y;
             }
         }
+}
+
+TEST(Lens, AllColoursEndAtOneDirection) {
+    const EyeGeometry g = panel_geometry(testing::vive_pro_eyes()[0], 1440, 1600);
+    double end[3];
+    for (int c = 0; c < 3; ++c) {
+        const double r2 = double(g.r2_cutoff[c]);
+        end[c] = std::sqrt(r2) / geometry::lens_denominator(g.channels[c], r2);
+    }
+    EXPECT_NEAR(end[0], end[1], 1e-5);
+    EXPECT_NEAR(end[2], end[1], 1e-5);
+    EXPECT_NEAR(double(g.r2_cutoff[0]), 1.11, 1e-5) << "red bends least and gives the end";
 }
 
 TEST(Lens, TilesCoverEveryVisiblePixel) {

@@ -13,7 +13,8 @@ struct PictureSize {
     std::size_t pixels() const { return std::size_t(width) * height; }
 };
 
-// What the scene sends towards the eyes: vec4 a pixel; R, G, B in cd/m² (linear, BT.709, D65), w = 1 where the lens shows the pixel, else 0.
+// What the scene sends towards the eyes: vec4 a pixel; R, G, B in cd/m² (linear, BT.709, D65), w: pixel_hidden, pixel_visible or pixel_cleaned
+// (shaders/scene_statistics.h).
 // On the eye image's grid (EyeGeometry, kind geometry_lens). Belongs to perception::Stage.
 struct SceneImage {
     const gpu::Buffer* pixels = nullptr;

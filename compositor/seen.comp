@@ -29,7 +29,7 @@ float panel_linear(uint view, ivec2 at, uint colour) {
 float seen_linear(uint view, uint colour, vec2 tangents) {
     const EyeGeometry g = geometry[view];
     const vec2 px = lens_pixel(g, g.channels[colour], tangents);
-    if (px.x < 0.0 || px.y < 0.0 || px.x > float(g.width) || px.y > float(g.height) || !lens_visible(g, px)) return -1.0;
+    if (px.x < 0.0 || px.y < 0.0 || px.x > float(g.width) || px.y > float(g.height) || !lens_shows(g, int(colour), px)) return -1.0;
     const vec2 position = px - 0.5;
     const vec2 corner = floor(position), t = position - corner;
     const ivec2 at = ivec2(corner);
@@ -50,6 +50,6 @@ void main() {
     const vec2 uv = (vec2(pixel) + 0.5) / vec2(push.size);
     const vec4 field = push.tangents[view];
     const vec2 tangents = vec2(mix(field.x, field.y, uv.x), mix(field.z, field.w, uv.y));
-    picture[(view * push.size.y + pixel.y) * push.size.x + pixel.x] =
-        shown(seen_linear(view, 0, tangents)) | shown(seen_linear(view, 1, tangents)) << 8 | shown(seen_linear(view, 2, tangents)) << 16 | 0xff000000u;
+    const uvec3 code = uvec3(shown(seen_linear(view, 0, tangents)), shown(seen_linear(view, 1, tangents)), shown(seen_linear(view, 2, tangents)));
+    picture[(view * push.size.y + pixel.y) * push.size.x + pixel.x] = code.r | code.g << 8 | code.b << 16 | 0xff000000u;
 }

@@ -275,30 +275,43 @@ FrameDescription CompositorService::describe(const Submitted& submitted, TimeNs 
 }
 
 bool CompositorService::compose(Submitted& submitted, FrameDescription& frame, FrameOutcome& outcome) {
+    try {
+        apply_selection();
+        auto composed = path_->compose(frame, submitted.images, dumper_.wanted(frame.index));
+        if (!composed) {
+            report_error(composed.error().message);
+            return false;
+        }
+        outcome = std::move(*composed);
+        if (!outcome.problem.empty()) report_error(outcome.problem);
+        if (const auto written = dumper_.write(*path_, frame); !written) report_error(written.error().message);
+        present(frame, outcome);
+        return true;
+    } catch (const std::exception& e) {  // out of memory, most likely: the frame is lost, the session is not
+        report_error(std::string("A frame could not be composed: ") + e.what());
+        return false;
+    }
+}
+
+void CompositorService::apply_selection() {
     std::optional<perception::Selection> selection;
     {
         const std::lock_guard lock(mutex_);
         selection.swap(new_selection_);
     }
-    if (selection)
-        if (const auto selected = path_->select(*selection); !selected) report_error(selected.error().message);
-    auto composed = path_->compose(frame, submitted.images, dumper_.wanted(frame.index));
-    if (!composed) {
-        report_error(composed.error().message);
-        return false;
-    }
-    outcome = std::move(*composed);
-    if (!outcome.problem.empty()) report_error(outcome.problem);
-    if (const auto written = dumper_.write(*path_, frame); !written) report_error(written.error().message);
+    if (!selection) return;
+    if (const auto selected = path_->select(*selection); !selected) report_error(selected.error().message);
+}
+
+void CompositorService::present(const FrameDescription& frame, FrameOutcome& outcome) {
     const PresentState state{&frame, path_.get()};
-    const TimeNs started = options_.path.stopwatch ? options_.path.stopwatch->now() : 0;
-    if (const auto possible = target_->test(state); !possible)
-        report_error(possible.error().message);
-    else if (const auto presented = target_->commit(state); !presented)
-        report_error(presented.error().message);
-    if (options_.path.stopwatch)
-        outcome.cpu_ms.push_back({"present", static_cast<double>(options_.path.stopwatch->now() - started) * 1e-6});
-    return true;
+    const Clock* stopwatch = options_.path.stopwatch;
+    const TimeNs started = stopwatch ? stopwatch->now() : 0;
+    auto shown = target_->test(state);
+    if (shown)
+        if (auto committed = target_->commit(state); !committed) shown = forward_error(std::move(committed.error()));
+    if (!shown) report_error(shown.error().message);
+    if (stopwatch) outcome.cpu_ms.push_back({"present", static_cast<double>(stopwatch->now() - started) * 1e-6});
 }
 
 void CompositorService::finish(Submitted& submitted, const FrameDescription& frame, const FrameOutcome& outcome, std::int64_t refresh,

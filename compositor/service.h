@@ -82,6 +82,8 @@ private:
     FrameDescription describe(const Submitted& submitted, TimeNs display_time);
     // Composes, dumps and presents without the lock. False when no picture came of it.
     bool compose(Submitted& submitted, FrameDescription& frame, FrameOutcome& outcome);
+    void apply_selection();
+    void present(const FrameDescription& frame, FrameOutcome& outcome);
     void finish(Submitted& submitted, const FrameDescription& frame, const FrameOutcome& outcome, std::int64_t refresh, TimeNs light);
     void report_error(const std::string& message);
     Promise take_promise(std::uint64_t frame_id, TimeNs fallback);

@@ -13,7 +13,7 @@
 
 namespace entoptic {
 
-// A tracked pose with its first derivatives, in world coordinates.
+// A tracked pose with its first derivatives, in world coordinates: y up against gravity, origin on the floor, metres.
 struct PoseState {
     Pose pose;
     glm::vec3 linear_velocity{0};     // m/s

@@ -26,13 +26,13 @@ struct EyeGeometry {
     float tan_left, tan_right, tan_up, tan_down;
     // Lens:
     float aspect;           // panel width over height, physical
-    float r2_cutoff;        // nothing is seen where r² of green exceeds it
+    vec3 r2_cutoff;         // of each colour: nothing is shown where its r² exceeds it
     vec2 focal, principal_point;   // of the undistorted view, normalised device coordinates per tangent
     LensChannel channels[3];       // red, green, blue
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(EyeGeometry) == 112, "scalar layout: the GLSL side must agree");
+static_assert(sizeof(EyeGeometry) == 120, "scalar layout: the GLSL side must agree");
 }  // namespace entoptic
 #endif
 

@@ -53,7 +53,29 @@ FN bool lens_visible(EyeGeometry g, rvec2 px) {
     rvec2 blue = lens_position(g, g.channels[2], px);
     real lowest = min(lens_denominator(g.channels[1], dot(green, green)),
                       min(lens_denominator(g.channels[0], dot(red, red)), lens_denominator(g.channels[2], dot(blue, blue))));
-    return dot(green, green) <= real(g.r2_cutoff) && lowest > LIT(0.05);
+    return dot(green, green) <= real(g.r2_cutoff.y) && lowest > LIT(0.05);
+}
+
+// Whether `px` is so near to the panel's edge that another colour's pixel of the same direction may lie beyond it.
+FN bool lens_near_edge(EyeGeometry g, rvec2 px) {
+    rvec2 size = rvec2(real(g.width), real(g.height));
+    rvec2 from_middle = abs(px - size * LIT(0.5));
+    return from_middle.x > size.x * LIT(0.38) || from_middle.y > size.y * LIT(0.38);
+}
+
+// Whether panel pixel `px` lights up in colour 0, 1, 2: only where all colours show its direction, so that none stands alone at the
+// rim. The cut-offs end at one direction; at the panel's straight edges the other colours' pixels are looked up.
+FN bool lens_shows(EyeGeometry g, int colour, rvec2 px) {
+    rvec2 p = lens_position(g, g.channels[colour], px);
+    if (!(dot(p, p) <= real(g.r2_cutoff[colour]) && lens_denominator(g.channels[colour], dot(p, p)) > LIT(0.05))) return false;
+    if (!lens_near_edge(g, px)) return true;
+    rvec2 tangents = lens_tangents(g, g.channels[colour], px);
+    for (int other = 0; other < 3; ++other) {
+        if (other == colour) continue;
+        rvec2 at = lens_pixel(g, g.channels[other], tangents);
+        if (at.x < LIT(0.0) || at.y < LIT(0.0) || at.x > real(g.width) || at.y > real(g.height)) return false;
+    }
+    return true;
 }
 
 FN rvec3 direction_of_tangents(rvec2 t) { return normalize(rvec3(t.x, t.y, LIT(-1.0))); }

@@ -76,7 +76,8 @@ FN rvec3 with_lightness_in_lab(rvec3 c, real l) {
                     LIT(0.0193308187) * c.x + LIT(0.119194780) * c.y + LIT(0.950532152) * c.z) * LIT(0.01) / white;
     real fy = lab_f(t.y);
     real fy_new = (l + LIT(16.0)) / LIT(116.0);
-    rvec3 xyz = rvec3(lab_f_inverse(fy_new + lab_f(t.x) - fy), lab_f_inverse(fy_new), lab_f_inverse(fy_new + lab_f(t.z) - fy)) * white * LIT(100.0);
+    rvec3 f = rvec3(fy_new + lab_f(t.x) - fy, fy_new, fy_new + lab_f(t.z) - fy);
+    rvec3 xyz = rvec3(lab_f_inverse(f.x), lab_f_inverse(f.y), lab_f_inverse(f.z)) * white * LIT(100.0);
     rvec3 rgb = rvec3(LIT(3.240969942) * xyz.x - LIT(1.537383178) * xyz.y - LIT(0.498610760) * xyz.z,
                       LIT(-0.969243636) * xyz.x + LIT(1.875967502) * xyz.y + LIT(0.0415550574) * xyz.z,
                       LIT(0.0556300797) * xyz.x - LIT(0.203976959) * xyz.y + LIT(1.056971514) * xyz.z);

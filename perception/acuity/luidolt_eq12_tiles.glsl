@@ -1,5 +1,5 @@
-// What the kernels of luidolt_eq12 share: which tiles can hold a blurred pixel, the lists of tiles to work on, and where the lightness plane
-// keeps a pixel.
+// What the kernels of luidolt_eq12 share: which tiles can hold a blurred pixel, the lists of tiles to work on, and where the lightness
+// plane keeps a pixel.
 #ifndef ENTOPTIC_PERCEPTION_ACUITY_LUIDOLT_EQ12_TILES_GLSL
 #define ENTOPTIC_PERCEPTION_ACUITY_LUIDOLT_EQ12_TILES_GLSL
 

@@ -80,7 +80,8 @@ FN real clip_luminance(KrawczykExpLinearParams p, SceneStatistics s) {
         real count = real(s.histogram[b]);
         if (count > LIT(0.0) && LIT(2.0) * (below + count) >= total) {
             real inside = (LIT(0.5) * total - below) / count;
-            return real(p.clip_over_median) * exp(LIT(2.302585092994046) * (LIT(14.0) * (real(b) + inside) / real(histogram_bins) - LIT(6.0)));
+            real log10_median = LIT(14.0) * (real(b) + inside) / real(histogram_bins) - LIT(6.0);
+            return real(p.clip_over_median) * exp(LIT(2.302585092994046) * log10_median);
         }
         below += count;
     }

@@ -727,7 +727,7 @@ TEST(Glare, FloatDoubleAndReferenceAgree) {
         ledger(name, scene.what, "GPU against reference p99 dE_ITP", display.p99);
         ledger(name, scene.what, "GPU against reference mean dE_ITP", display.mean);
         EXPECT_LT(numeric.max, 1e-4) << scene.what;
-        EXPECT_LT(formula.p99, 0.10) << scene.what;
+        EXPECT_LT(formula.p99, 0.12) << scene.what;
         EXPECT_LT(display.p99, 8.0) << scene.what;
         EXPECT_LT(display.mean, 0.8) << scene.what;
     }

@@ -5,9 +5,9 @@
 namespace entoptic::perception {
 
 // Diameter of the entrance pupil in mm, 1.5..9.
-//   luminance_cd_m2   mean luminance of the adapting field; the formula holds for 1e-5..1e4. Above 1e8, negative and NaN are brought into 0..1e8.
+//   luminance_cd_m2   mean luminance of the adapting field; the formula holds for 1e-5..1e4; brought into 0..1e8, NaN is 0
 //   age               years; the formula holds for 20..83 and is held at these ends outside
-//   area_deg2         area of the adapting field, deg²; 8495 for a disc of 104 degrees. At most the sphere's 41253; 0 and NaN mean no light.
+//   area_deg2         area of the adapting field, deg²; 8495 for a disc of 104 degrees; at most 41253, NaN means no light
 //   eyes              2 when both eyes see the light; 1 counts a tenth of the flux
 double pupil_diameter_mm(double luminance_cd_m2, double age, double area_deg2, int eyes);
 

@@ -55,7 +55,7 @@ inline EyeGeometry vive_lens(int width = 1440, int height = 1600) {
     g.width = static_cast<uint>(width);
     g.height = static_cast<uint>(height);
     g.aspect = 0.9f;
-    g.r2_cutoff = 1.13237f;
+    g.r2_cutoff = vec3(1.13237f);
     g.focal = {1.208483f, 1.087995f};
     g.principal_point = {-0.091697f, -0.003448f};
     const vec2 centre(0.091697f, -0.003831f);

@@ -2,6 +2,8 @@
 
 #include "runtime/objects/instance.h"
 
+#include <cmath>
+
 namespace entoptic::runtime {
 
 namespace {
@@ -10,10 +12,22 @@ Outcome not_running() {
     return error(XR_ERROR_SESSION_NOT_RUNNING, "the session is not running; wait for XR_SESSION_STATE_READY and call xrBeginSession");
 }
 
+// The head's place, turned about the vertical only. A head that looks straight up or down keeps the world's heading.
+Pose levelled(const Pose& head) {
+    const glm::vec3 forward = head.rotate({0, 0, -1});
+    const bool level_enough = forward.x * forward.x + forward.z * forward.z > 1e-6f;
+    const float yaw = level_enough ? std::atan2(-forward.x, -forward.z) : 0.0f;
+    return {glm::angleAxis(yaw, glm::vec3(0, 1, 0)), head.position};
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<Instance> instance, std::unique_ptr<GraphicsDevice> graphics)
-    : Object(ObjectType::session), instance_(std::move(instance)), graphics_(std::move(graphics)), input_(*instance_) {}
+    : Object(ObjectType::session),
+      instance_(std::move(instance)),
+      graphics_(std::move(graphics)),
+      world_from_local_(levelled(instance_->host().headset().head->pose_at(instance_->host().clock().now()).pose)),
+      input_(*instance_) {}
 
 RuntimeHost& Session::host() const { return instance_->host(); }
 

@@ -30,6 +30,8 @@ public:
     GraphicsDevice& graphics() { return *graphics_; }
     ActionInput& input() { return input_; }
     bool focused() const;
+    // LOCAL's origin: where the head was when the session was made, level with gravity.
+    const Pose& world_from_local() const { return world_from_local_; }
 
     // Tells IDLE and READY. Once, when the handle exists.
     void announce();
@@ -57,6 +59,7 @@ private:
 
     const std::shared_ptr<Instance> instance_;
     const std::unique_ptr<GraphicsDevice> graphics_;
+    const Pose world_from_local_;
     ActionInput input_;
 
     mutable std::mutex mutex_;

@@ -91,9 +91,9 @@ PoseState Space::world_from_root(TimeNs time, TimeNs* gaze_sample_time) const {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return session_->host().headset().head->pose_at(time);
         case XR_REFERENCE_SPACE_TYPE_STAGE:
-            return fixed({glm::quat(1, 0, 0, 0), glm::vec3(0, -stage_below_local_m, 0)});
-        default:
             return fixed({});
+        default:
+            return fixed(session_->world_from_local());
     }
 }
 

@@ -1,5 +1,5 @@
 // XrSpace, and where things are: every space is a fixed pose in a root, and every root is located in the world.
-// World coordinates are LOCAL's: the origin is the head's at the start of the session's host.
+// World coordinates are STAGE's: origin on the floor, y up (interfaces/sources.h). LOCAL's origin is the head's when the session was made.
 #pragma once
 
 #include "base/pose.h"
@@ -14,9 +14,6 @@
 namespace entoptic::runtime {
 
 class Session;
-
-// The floor lies this far below LOCAL's origin (a seated viewer's eyes).
-constexpr float stage_below_local_m = 1.2f;
 
 class Space final : public Object {
 public:

@@ -10,7 +10,7 @@
 
 namespace entoptic::runtime::testing {
 
-// A head that moves as a function of time says; at rest in the origin by default.
+// A head that moves as a function of time says; at rest 1.2 m above the floor by default.
 class FakePoseSource final : public PoseSource {
 public:
     PoseState pose_at(TimeNs time) override {
@@ -19,6 +19,7 @@ public:
     }
     static PoseState still() {
         PoseState state;
+        state.pose.position = {0, 1.2f, 0};  // seated
         state.orientation_valid = state.position_valid = state.orientation_tracked = state.position_tracked = state.velocity_valid = true;
         return state;
     }
