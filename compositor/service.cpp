@@ -266,7 +266,8 @@ FrameDescription CompositorService::describe(const Submitted& submitted, TimeNs 
     frame.layers = submitted.frame.layers;
     const TimeNs started = options_.path.stopwatch ? options_.path.stopwatch->now() : 0;
     predict(frame, headset_, clock_.now(), display_time, last_light_);
-    last_light_ = display_time;
+    // Until an application has shown its first layer there is nothing to be adapted to: the eyes begin with the first picture.
+    if (last_light_ > 0 || !frame.layers.empty()) last_light_ = display_time;
     if (options_.path.stopwatch) {
         const std::lock_guard lock(mutex_);
         statistics_.add_cpu("predict", static_cast<double>(options_.path.stopwatch->now() - started) * 1e-6);

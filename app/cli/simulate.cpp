@@ -20,7 +20,7 @@ namespace {
 using namespace perception;
 
 constexpr double frame_rate = 90;         // of the eye's states between the wanted times
-constexpr double default_age = 30;        // years; facts/perception.md section 11
+constexpr double default_age = 30;        // years, of the default eye
 constexpr double full_field_deg2 = 8495;  // a disc of 104 degrees, what a headset shows
 constexpr double longest_time_s = 3600;
 

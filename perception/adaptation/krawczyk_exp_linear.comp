@@ -6,6 +6,7 @@
 
 #include "perception/adaptation/krawczyk_exp_linear_math.glsl"
 #include "perception/observer_state.h"
+#include "shaders/colour_math.glsl"
 
 layout(local_size_x = 256) in;
 
@@ -13,6 +14,8 @@ layout(scalar, binding = 0) readonly buffer Tiles { TileStatistics tiles[]; };
 layout(scalar, binding = 1) readonly buffer Geometry { EyeGeometry geometry[]; };
 layout(scalar, binding = 2) buffer Statistics { SceneStatistics statistics[]; };
 layout(scalar, binding = 3) buffer State { ObserverState state[]; };
+layout(scalar, binding = 4) readonly buffer Scene { vec4 scene[]; };
+layout(scalar, binding = 5) readonly buffer SolidAngle { float solid_angle[]; };
 
 layout(scalar, push_constant) uniform Push {
     KrawczykExpLinearParams params;
@@ -21,10 +24,20 @@ layout(scalar, push_constant) uniform Push {
     uint view, tiles_x, tiles_y;
     uint snap;              // 1: the state becomes the target
     uint lid_closed;        // 1: the state holds
+    uint by_pixel;          // 1: a small picture, whose tiles are wider than the Gaussian: each pixel counts by itself
 } push;
 
 shared GazeSums parts[256];
 shared float clip_cd_m2;
+
+// One pixel, as a tile of its own.
+GazeSums pixel_sums(EyeGeometry g, uint p, bool gaze_known) {
+    const uint at = push.view * g.width * g.height + p;
+    const float sr = solid_angle[at], y = luminance(scene[at].rgb);
+    const TileStatistics pixel = TileStatistics(y * sr, sr, y, y, y, 0u, sr > 0.0 ? 1u : 0u);
+    const vec2 px = vec2(p % g.width, p / g.width) + 0.5;
+    return tile_sums(pixel, gaze_known ? pixel_weight(push.params, g, push.gaze, px) : 0.0, clip_cd_m2);
+}
 
 void main() {
     const uint i = gl_LocalInvocationID.x;
@@ -34,7 +47,8 @@ void main() {
     const uint tile_count = push.tiles_x * push.tiles_y;
     const bool gaze_known = dot(push.gaze, push.gaze) > 0.5;
     GazeSums sum = no_tiles();
-    for (uint t = i; t < tile_count; t += 256u) {
+    for (uint p = i; push.by_pixel == 1u && p < g.width * g.height; p += 256u) sum = added(sum, pixel_sums(g, p, gaze_known));
+    for (uint t = i; push.by_pixel == 0u && t < tile_count; t += 256u) {
         const float weight = gaze_known ? tile_weight(push.params, g, push.gaze, t % push.tiles_x, t / push.tiles_x) : 0.0;
         sum = added(sum, tile_sums(tiles[push.view * tile_count + t], weight, clip_cd_m2));
     }

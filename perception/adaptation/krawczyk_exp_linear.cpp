@@ -23,12 +23,15 @@ constexpr ParameterInfo parameters[] = {
 static_assert(sizeof(KrawczykExpLinearParams) == sizeof(float) * std::size(parameters));
 
 constexpr float lid_counts_as_closed = 0.5f;
+// Pictures of at most this many pixels (128x128, the paper's own reduction) are weighted pixel by pixel: their tiles of 32x8 pixels would be
+// wider than the Gaussian around the gaze.
+constexpr std::uint32_t most_single_pixels = 128 * 128;
 
 struct Push {
     KrawczykExpLinearParams params;
     vec3 gaze;
     float dt_s;
-    uint view, tiles_x, tiles_y, snap, lid_closed;
+    uint view, tiles_x, tiles_y, snap, lid_closed, by_pixel;
 };
 
 class KrawczykExpLinear final : public Model {
@@ -40,7 +43,7 @@ public:
             kernel,
             gpu::Kernel::create(
                 context.device,
-                {"adaptation.krawczyk_exp_linear", krawczyk_exp_linear_comp_spv, {storage, storage, storage, storage}, sizeof(Push), {}}));
+                {"adaptation.krawczyk_exp_linear", krawczyk_exp_linear_comp_spv, {storage, storage, storage, storage, storage, storage}, sizeof(Push), {}}));
         model->kernel_ = std::move(kernel);
         model->views_ = context.views;
         return model;
@@ -53,8 +56,9 @@ public:
             const EyeInput& eye = io.input.eyes[view];
             const vec3 gaze(krawczyk_exp_linear::gaze_in_view(views_[view], glm::dvec3(eye.gaze_direction)));
             const bool closed = !(eye.eyelid_open >= lid_counts_as_closed);
-            io.commands.dispatch(kernel_, {io.tiles, io.geometry, io.statistics, io.state},
-                                 Push{params_, gaze, dt_s, view, io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, closed ? 1u : 0u},
+            io.commands.dispatch(kernel_, {io.tiles, io.geometry, io.statistics, io.state, io.scene, io.solid_angle},
+                                 Push{params_, gaze, dt_s, view, io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, closed ? 1u : 0u,
+                                      io.width * io.height <= most_single_pixels ? 1u : 0u},
                                  {1, 1, 1});
         }
         return {};

@@ -58,6 +58,12 @@ FN rvec3 gaze_in_view(EyeGeometry g, rvec3 gaze) {
     return geometry_direction(g, clamp(px, rvec2(LIT(0.0), LIT(0.0)), rvec2(real(g.width), real(g.height))));
 }
 
+// Weight of one point of the eye image: exp(-angle²/2σ²).
+FN real pixel_weight(KrawczykExpLinearParams p, EyeGeometry g, rvec3 gaze, rvec2 px) {
+    real angle = angle_between(geometry_direction(g, px), gaze) / (real(p.sigma_gaze_deg) * LIT(0.017453292519943295));
+    return exp(LIT(-0.5) * angle * angle);
+}
+
 // Mean weight of a tile's four 8×8-pixel blocks: exp(-angle²/2σ²) at their centres.
 FN real tile_weight(KrawczykExpLinearParams p, EyeGeometry g, rvec3 gaze, uint tile_x, uint tile_y) {
     real sigma = real(p.sigma_gaze_deg) * LIT(0.017453292519943295);

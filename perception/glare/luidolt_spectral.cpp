@@ -41,7 +41,7 @@ constexpr ParameterInfo parameters[] = {
     {"patches", "1", 0, 256, 64, "choice: error and time in the ledger (Welch 1967)", "patches of the pupil whose particles give the halo its texture; 0: smooth"},
     {"texel_px", "px", 1, 16, 4, "facts 3.4.2: 4 has p99 dE_ITP 0.3", "least width of a texel of the grid on which wide glare is computed"},
     {"near_px", "px", 0, 8, 8, "facts 3.3c and 3.4.2", "radius of the near field, done at full resolution"},
-    {"near_from", "1", 0, 1e6f, 8, "choice: dimmer light the panel shows as it is, and the wearer's own eye scatters it", "light above this many times the adaptation luminance has a near field; 0: all light"},
+    {"near_from", "1", 0, 1e6f, 16, "choice: dimmer light the panel shows as it is, and the wearer's own eye scatters it", "light above this many times the adaptation luminance has a near field; 0: all light"},
     {"rebuild_mm", "mm", 0.02f, 1, 0.2f, "facts 3.4.6; linear between diameters, so twice as far is as good", "distance of the pupil diameters at which the kernel is built"},
     {"angle_scale", "1", 1, 17.5f, 1, "trap L10: 17.5 is the paper's texel for pixel", "enlarges the kernel"},
     {"radius_deg", "deg", 2, 180, 180, "trap L13: the veil counts out to the edge", "the kernel ends here"},
@@ -366,7 +366,7 @@ void LuidoltSpectral::record_frame(StageIo& io, KernelChoice choice) {
     gate.always = as_printed() ? 1 : 0;
     const uint lattice_groups = gpu::groups_for(grid_.nodes_x, 256 / grid_.step - 2);
     gate.groups[gate_tiles] = {near ? gpu::groups_for(io.tiles_x * io.tiles_y * io.views, 256) : 0, 1, 1};
-    gate.groups[gate_pixels] = {lattice_groups, gpu::groups_for(grid_.nodes_y, 4), io.views};
+    gate.groups[gate_pixels] = {lattice_groups, gpu::groups_for(grid_.nodes_y, 8), io.views};
     gate.groups[gate_splat] = {glare_n / 64, grid_.rows, pairs()};
     gate.groups[gate_rows] = {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1};
     gate.groups[gate_columns] = {glare_n / fft_lines, 3 * pairs(), 1};

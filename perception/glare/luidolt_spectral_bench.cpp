@@ -19,7 +19,7 @@ Selection glare(const std::vector<std::string>& settings) { return only({"adapta
 void GlareLuidoltSpectral(benchmark::State& state) {
     time_effect(state, vive_lens(), lamps(), glare({"glare.near_from=" + std::to_string(state.range(0))}), "perceive.glare");
 }
-BENCHMARK(GlareLuidoltSpectral)->ArgName("near_from")->Arg(8)->Arg(0)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(GlareLuidoltSpectral)->ArgName("near_from")->Arg(16)->Arg(0)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 // Nothing to scatter: the gate leaves it out.
 void GlareLuidoltSpectralGated(benchmark::State& state) {

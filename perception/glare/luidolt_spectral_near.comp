@@ -24,6 +24,7 @@ layout(scalar, binding = 6) writeonly buffer NearLight { vec3 near_light[]; };
 layout(scalar, push_constant) uniform PushBlock { NearPush push; };
 
 shared vec3 weights[max_side * max_side];
+shared uint lit_rows;      // a bit for each row of pixels, from max_near_px above the tile to as many below, that holds light above the threshold
 
 vec3 kernel(float theta) {
     const float sine = sin(theta / push.angle_scale);
@@ -47,6 +48,12 @@ vec3 pixel_weight(ivec2 d, vec3 across, vec3 down, float solid_angle) {
     return sum * (solid_angle / float(samples * samples));
 }
 
+// Column of the picture, or -1 outside. A sphere closes.
+int column_of(int x, bool sphere) {
+    if (sphere) return (x + int(push.width)) % int(push.width);
+    return x < int(push.width) ? max(x, -1) : -1;
+}
+
 vec3 excess(vec4 pixel, float threshold) { return max(pixel.rgb - threshold, vec3(0.0)); }
 
 void main() {
@@ -61,26 +68,47 @@ void main() {
         const float solid_angle = length(cross(across, down));
         const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_near_px)));
         const int side = 2 * radius + 1;
+        const uint base = view * push.width * push.height;
+        const float threshold = push.near_from * state[view].adaptation_cd_m2;
+        const bool sphere = g.kind == geometry_equirect;
+        // Where is light at all? A lamp fills few of the rows in reach.
         barrier();
+        if (lane == 0) lit_rows = 0u;
+        barrier();
+        const uint reach_x = tile_width + 2 * uint(radius), reach_y = tile_height + 2 * uint(radius);
+        for (uint i = lane; i < reach_x * reach_y; i += tile_width * tile_height) {
+            const int row = int(i / reach_x) - radius, y = int(corner.y) + row, x = column_of(int(corner.x + i % reach_x) - radius, sphere);
+            if (x < 0 || y < 0 || y >= int(push.height)) continue;
+            const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
+            if (max(pixel.r, max(pixel.g, pixel.b)) > threshold) atomicOr(lit_rows, 1u << uint(row + int(max_near_px)));
+        }
+        barrier();
+        const uint lit = lit_rows;
+        const uvec2 px = corner + gl_LocalInvocationID.xy;
+        const bool inside = px.x < push.width && px.y < push.height;
+        const uint at = base + px.y * push.width + px.x;
+        if (lit == 0u) {
+            if (inside) near_light[at] = vec3(0.0);
+            continue;
+        }
         for (uint i = lane; i < uint(side * side); i += tile_width * tile_height) {
             const ivec2 d = ivec2(int(i) % side, int(i) / side) - radius;
             weights[i] = d == ivec2(0) ? vec3(0.0) : pixel_weight(d, across, down, solid_angle);
         }
         barrier();
-        const uvec2 px = corner + gl_LocalInvocationID.xy;
-        if (px.x >= push.width || px.y >= push.height) continue;
-        const uint base = view * push.width * push.height, at = base + px.y * push.width + px.x;
-        const float threshold = push.near_from * state[view].adaptation_cd_m2;
+        if (!inside) continue;
         const vec4 here = scene[at];
         const vec3 own = excess(here, threshold);
         vec3 sum = vec3(0.0);
         for (int dy = -radius; dy <= radius; ++dy) {
             const int y = int(px.y) + dy;
             if (y < 0 || y >= int(push.height)) continue;
+            // Rows without light matter only to pixels that have some to lose.
+            const bool row_lit = (lit >> uint(y - int(corner.y) + int(max_near_px)) & 1u) != 0u;
+            if (!row_lit && own == vec3(0.0)) continue;
             for (int dx = -radius; dx <= radius; ++dx) {
-                int x = int(px.x) + dx;
-                if (g.kind == geometry_equirect) x = (x + int(push.width)) % int(push.width);
-                if (x < 0 || x >= int(push.width)) continue;
+                const int x = column_of(int(px.x) + dx, sphere);
+                if (x < 0) continue;
                 const vec4 there = scene[base + uint(y) * push.width + uint(x)];
                 if (there.w > 0.0) sum += weights[(dy + radius) * side + dx + radius] * (excess(there, threshold) - own);
             }

@@ -3,13 +3,13 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // Eye image to the node lattice: the light of every pixel, luminance times solid angle, is shared out between its nine nodes by splines
-// (the adjoint of what the pass "apply" does). A workgroup does 256 columns of pixels and 4 rows of nodes: sums along the columns first,
+// (the adjoint of what the pass "apply" does). A workgroup does 256 columns of pixels and 8 rows of nodes: sums along the columns first,
 // then across. A pixel belongs to the segment of its nearest node and counts for that node and both its neighbours.
 #include "perception/glare/luidolt_spectral_gpu.h"
 #include "perception/glare/luidolt_spectral_math.glsl"
 
 layout(local_size_x = 256) in;
-const uint node_rows = 4;
+const uint node_rows = 8;
 
 layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer SolidAngles { float solid_angle[]; };     // sr, 0 where the lens shows nothing

@@ -814,7 +814,7 @@ TEST(Glare, GateHoldsItsBound) {
     std::uniform_real_distribution<double> uniform01;
     int ran = 0, gated = 0;
     double worst = 0;
-    for (int i = 0; i < 48; ++i) {
+    for (int i = 0; i < 32; ++i) {
         // Greys of a contrast about the one at which the gate opens; every fourth a picture far from it.
         const double level = std::pow(10, -2 + 5 * uniform01(random)), contrast = std::pow(10, -5.5 + 2 * uniform01(random));
         ImageF in = uniform(64, 64, static_cast<float>(level));
@@ -839,8 +839,8 @@ TEST(Glare, GateHoldsItsBound) {
     }
     ledger(name, "gate", "codes left out max", worst);
     EXPECT_LE(worst, 0.5);
-    EXPECT_GT(ran, 8);
-    EXPECT_GT(gated, 8);
+    EXPECT_GT(ran, 5);
+    EXPECT_GT(gated, 5);
 }
 
 // --- the paper to the letter ---

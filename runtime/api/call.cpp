@@ -53,6 +53,8 @@ const char* result_name(XrResult result) {
 }
 
 void report_error(const char* function, std::uint64_t handle, const Outcome& outcome) noexcept {
+    // The loader and engines probe xrGetInstanceProcAddr for hundreds of names: that is a question, not a mistake.
+    if (outcome.code() == XR_ERROR_FUNCTION_UNSUPPORTED) return;
     try {
         const char* name = result_name(outcome.code());
         const std::string message =

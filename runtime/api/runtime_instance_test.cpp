@@ -267,7 +267,7 @@ TEST(System, OneHeadset) {
     info.formFactor = XR_FORM_FACTOR_HANDHELD_DISPLAY;
     EXPECT_EQ(xr.xrGetSystem(xr.instance, &info, &system), XR_ERROR_FORM_FACTOR_UNSUPPORTED);
     info.formFactor = XR_FORM_FACTOR_MAX_ENUM;
-    EXPECT_EQ(xr.xrGetSystem(xr.instance, &info, &system), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(xr.xrGetSystem(xr.instance, &info, &system), XR_ERROR_FORM_FACTOR_UNSUPPORTED);
 }
 
 TEST(System, ViewConfigurations) {

@@ -6,6 +6,7 @@
 #include "runtime/api/verify.h"
 #include "runtime/objects/session.h"
 
+#include <algorithm>
 #include <array>
 
 namespace entoptic::runtime::api {
@@ -14,15 +15,13 @@ namespace {
 
 constexpr std::array reference_spaces{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE};
 
-Outcome check_reference_space(XrReferenceSpaceType type) {
-    if (std::find(reference_spaces.begin(), reference_spaces.end(), type) != reference_spaces.end()) return XR_SUCCESS;
-    const bool known = type == XR_REFERENCE_SPACE_TYPE_UNBOUNDED_MSFT || type == XR_REFERENCE_SPACE_TYPE_COMBINED_EYE_VARJO;
-    if (!known && type < 1000000000)
-        return error(XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "reference space {} is not offered", static_cast<int>(type));
-    if (known)
-        return error(XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "reference space {} belongs to an extension that is not offered",
-                     static_cast<int>(type));
-    return invalid("{} is not a reference space type", static_cast<int>(type));
+bool offered(XrReferenceSpaceType type) {
+    return std::find(reference_spaces.begin(), reference_spaces.end(), type) != reference_spaces.end();
+}
+
+Outcome space_unsupported(XrReferenceSpaceType type) {
+    return error(XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "reference space {} is not offered; take one from xrEnumerateReferenceSpaces",
+                 static_cast<int>(type));
 }
 
 XrSpaceLocationFlags location_flags(const PoseState& state) {
@@ -84,7 +83,7 @@ XrResult XRAPI_CALL create_reference_space(XrSession handle, const XrReferenceSp
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require(info, XR_TYPE_REFERENCE_SPACE_CREATE_INFO, "createInfo"));
         ENTOPTIC_XR_TRY(require_pointer(space, "space"));
-        ENTOPTIC_XR_TRY(check_reference_space(info->referenceSpaceType));
+        if (!offered(info->referenceSpaceType)) return space_unsupported(info->referenceSpaceType);
         ENTOPTIC_XR_TRY(check_pose(info->poseInReferenceSpace));
         return publish(std::make_shared<Space>(session, info->referenceSpaceType, to_pose(info->poseInReferenceSpace)),
                        handle_value(handle), space);
@@ -96,7 +95,8 @@ XrResult XRAPI_CALL get_reference_space_bounds_rect(XrSession handle, XrReferenc
         std::shared_ptr<Session> session;
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require_pointer(bounds, "bounds"));
-        ENTOPTIC_XR_TRY(check_reference_space(type));
+        if (type == XR_REFERENCE_SPACE_TYPE_MAX_ENUM) return invalid("XR_REFERENCE_SPACE_TYPE_MAX_ENUM is not a reference space");
+        if (!offered(type)) return space_unsupported(type);
         *bounds = {0, 0};
         return XR_SPACE_BOUNDS_UNAVAILABLE;  // nobody has measured the room
     });

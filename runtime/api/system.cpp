@@ -27,11 +27,9 @@ XrResult XRAPI_CALL get_system(XrInstance handle, const XrSystemGetInfo* info, X
         ENTOPTIC_XR_TRY(find(handle, instance));
         ENTOPTIC_XR_TRY(require(info, XR_TYPE_SYSTEM_GET_INFO, "getInfo"));
         ENTOPTIC_XR_TRY(require_pointer(system, "systemId"));
-        if (info->formFactor == XR_FORM_FACTOR_HANDHELD_DISPLAY) {
+        if (info->formFactor != XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY) {
             return error(XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY is offered");
         }
-        if (info->formFactor != XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY)
-            return invalid("{} is not a form factor", static_cast<int>(info->formFactor));
         *system = headset_system;
         return XR_SUCCESS;
     });

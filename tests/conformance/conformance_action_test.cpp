@@ -307,10 +307,10 @@ TEST_F(Actions, AControllerComesAndGoes) {
     XrSpace space = XR_NULL_HANDLE;
     ASSERT_EQ(xr.xrCreateActionSpace(session, &info, &space), XR_SUCCESS);
     const XrSpace local = reference_space(XR_REFERENCE_SPACE_TYPE_LOCAL);
-    xr.host->left.change([](ControllerState& state) { state.grip.pose.position = {0, 1, -1}; });
+    xr.host->left.change([](ControllerState& state) { state.grip.pose.position = {0, 2.2f, -1}; });
     ASSERT_EQ(sync({{set, XR_NULL_PATH}}), XR_SUCCESS);
     EXPECT_EQ(locate(space, local, now()).locationFlags, 0xfu);
-    EXPECT_FLOAT_EQ(locate(space, local, now()).pose.position.y, 1);
+    EXPECT_NEAR(locate(space, local, now()).pose.position.y, 1, 1e-6) << "LOCAL is at the head, 1.2 m above the floor";
     static_cast<void>(profile_events());
     xr.host->left.change([](ControllerState& state) { state.active = false; });
     EXPECT_EQ(locate(space, local, now()).locationFlags, 0u);

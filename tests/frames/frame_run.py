@@ -13,13 +13,14 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 
 import png
 
-MESSAGE = re.compile(r"VUID-|SYNC-HAZARD|UNASSIGNED-|Validation (Error|Warning)|VALID_ERROR|VALID_USAGE|VALID_WARN|Core Validation|"
+MESSAGE = re.compile(r"VUID-|SYNC-HAZARD|UNASSIGNED-|Validation (Error|Warning)|VALID_(ERROR|USAGE|WARN)|"
                      r"AddressSanitizer|runtime error:|LeakSanitizer")
 REPORT_KEYS = ("version", "device", "hmd", "clock", "application", "frames", "timing_ms", "effects", "photometry", "state", "errors")
 
@@ -84,15 +85,18 @@ def run_once(arguments, folder):
     reading, writing = os.pipe()
     try:
         with open(os.path.join(folder, "output.txt"), "wb") as output:
-            done = subprocess.run(call, env=env, stdin=reading, stdout=output, stderr=subprocess.STDOUT, timeout=arguments.timeout)
+            run = subprocess.Popen(call, env=env, stdin=reading, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+            code = run.wait(arguments.timeout)
     except subprocess.TimeoutExpired:
+        os.killpg(run.pid, signal.SIGKILL)   # the application too
+        run.wait()
         tell_output(folder)
         raise Failure(f"still running after {arguments.timeout} s") from None
     finally:
         os.close(reading)
         os.close(writing)
     try:
-        check_run(arguments, done.returncode, read_output(folder), report_path)
+        check_run(arguments, code, read_output(folder), report_path)
     except Failure:
         tell_output(folder)
         raise
@@ -113,6 +117,8 @@ def check_run(arguments, code, output, report_path):
     expect(code == 0, f"exit code {code}")
     messages = [line for line in output.splitlines() if MESSAGE.search(line)]
     expect(not messages, f"{len(messages)} messages of validation layers or sanitizers, the first: {messages[:1]}")
+    if arguments.core_validation:
+        expect("Core Validation output type" in output, "the core validation layer was not there")
     expect(os.path.exists(report_path), "there is no report")
     with open(report_path, encoding="utf-8") as file:
         report = json.load(file)
@@ -137,11 +143,14 @@ def check_run(arguments, code, output, report_path):
 
 def check_pictures(arguments, folder):
     """Mean code of each dumped panel picture of the left eye: within limits, and without jumps from frame to frame."""
-    names = sorted(name for name in os.listdir(folder) if name.endswith("_left_panel.png"))
+    names = sorted(name for name in os.listdir(folder) if name.endswith("_left_panel.png"))[arguments.settle:]
     expect(len(names) >= 2, f"no pictures of the panel: {sorted(os.listdir(folder))[:5]}")
     means = [png.mean(os.path.join(folder, name)) for name in names]
     print(f"mean code: {min(means):.2f} to {max(means):.2f} in {len(means)} pictures")
     if arguments.steady is not None:
+        # An application's first frame has no layers yet (shouldRender is false): black, and the picture appears after it.
+        first = next((i for i, mean in enumerate(means) if mean > 0), 0)
+        means, names = means[first:], names[first:]
         jump, name = max((abs(b - a), name) for a, b, name in zip(means, means[1:], names[1:]))
         print(f"largest jump: {jump:.3f} codes at {name}")
         expect(jump <= arguments.steady, f"the picture jumps by {jump:.3f} codes at {name}, allowed {arguments.steady}")
@@ -174,6 +183,7 @@ def main():
     parser.add_argument("--profile", action="append", default=[], help="application profile to use")
     parser.add_argument("--dump-stages", help="also dump these stages; there must be pictures then")
     parser.add_argument("--dump-every", type=int, default=10)
+    parser.add_argument("--settle", type=int, default=0, metavar="N", help="judge no pictures before the N-th: adaptation settles")
     parser.add_argument("--steady", type=float, metavar="CODES", help="largest jump of the panel's mean code between dumped pictures")
     parser.add_argument("--mean-codes", metavar="LOW:HIGH", help="range of the panel's mean code")
     parser.add_argument("--repeat", type=int, default=1)
