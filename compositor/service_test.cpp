@@ -142,7 +142,7 @@ TEST(Lockstep, EveryFrameIsComposedOnceAtItsPredictedTime) {
     s.service->begin_session();
     TimeNs before = 0;
     for (int i = 0; i < 8; ++i) {
-        const FrameTiming timing = s.one_frame();
+        const FrameTiming timing = s.one_frame(true);
         EXPECT_TRUE(timing.should_render);
         if (before) { EXPECT_EQ(timing.predicted_display_time - before, s.headset.display.period); }
         before = timing.predicted_display_time;
@@ -167,10 +167,22 @@ TEST(Lockstep, EveryFrameIsComposedOnceAtItsPredictedTime) {
     EXPECT_TRUE(s.errors.empty());
 }
 
+TEST(Lockstep, TheEyesBeginWithTheFirstPicture) {
+    Session s(true);
+    s.service->begin_session();
+    s.one_frame();  // black: an application that has nothing to show yet
+    s.one_frame(true);
+    s.one_frame(true);
+    s.service->end_session();
+    ASSERT_EQ(s.log->frames.size(), 3u);
+    EXPECT_TRUE(s.log->frames[1].perception.snap) << "adapted to the dark before the first picture, it would flash";
+    EXPECT_FALSE(s.log->frames[2].perception.snap);
+}
+
 TEST(Lockstep, DiscardedFramesPassTheirTime) {
     Session s(true);
     s.service->begin_session();
-    const FrameTiming first = s.one_frame();
+    const FrameTiming first = s.one_frame(true);
     const FrameTiming second = s.service->wait_frame();
     s.service->begin_frame(second.frame_id);
     s.service->discard_frame(second.frame_id);
