@@ -36,7 +36,7 @@ constexpr ParameterInfo parameters[] = {
     {"strength", "1", 0, 10, 1, "choice: 1 is the eye that the other parameters describe", "times the scattered light; at most 0.9 of all light is scattered"},
     {"particle_diameter_um", "um", 1, 20, 6, "Luidolt 2020, figure 4", "diameter of the particles in cornea and lens"},
     {"particles_per_mm2", "1/mm2", 0, 1e5f, 79.577f, "Luidolt 2020, figure 4: 1000 in a pupil of 4 mm", "particles per area of the pupil; they stay where they are when the pupil moves"},
-    {"wavelengths", "1", 3, 32, 8, "facts 3.3, trap L9: midpoints of 400..700 nm", "samples of the spectrum"},
+    {"wavelengths", "1", 3, 32, 8, "facts 3.3, trap L9: midpoints of 400..700 nm", "samples of the spectrum in the halo's texture; its mean has 96"},
     {"diffraction", "1", 0, 1, 1, "Luidolt 2020, eq. 5", "share of the light that the edge of the pupil diffracts; 0 with no particles: no glare at all"},
     {"patches", "1", 0, 256, 64, "choice: error and time in the ledger (Welch 1967)", "patches of the pupil whose particles give the halo its texture; 0: smooth"},
     {"texel_px", "px", 1, 16, 4, "facts 3.4.2: 4 has p99 dE_ITP 0.3", "least width of a texel of the grid on which wide glare is computed"},
@@ -100,6 +100,14 @@ public:
     Result<void> record(StageIo& io) override;
 
 private:
+    struct Wanted {
+        gpu::Kernel* kernel;
+        const char* name;
+        std::span<const std::uint32_t> spirv;
+        std::uint32_t buffers, push_bytes;
+        std::vector<std::uint32_t> specialization;
+    };
+    Result<void> make_kernel(const Wanted& w);
     Result<void> make_kernels();
     Result<void> prepare();
     Result<void> make_buffers();
@@ -141,17 +149,9 @@ private:
 };
 
 Result<void> LuidoltSpectral::make_kernels() {
-    struct Wanted {
-        gpu::Kernel* kernel;
-        const char* name;
-        std::span<const std::uint32_t> spirv;
-        std::uint32_t buffers, push_bytes;
-        std::vector<std::uint32_t> specialization;
-    };
     const Wanted wanted[] = {
         {&gate_, "glare.gate", luidolt_spectral_gate_comp_spv, 3, sizeof(GatePush), {}},
         {&tiles_, "glare.tiles", luidolt_spectral_tiles_comp_spv, 5, sizeof(TilesPush), {}},
-        {&pixels_, "glare.pixels", luidolt_spectral_pixels_comp_spv, 3, sizeof(LatticePush), {}},
         {&coverage_, "glare.coverage", luidolt_spectral_coverage_comp_spv, 2, sizeof(LatticePush), {}},
         {&splat_, "glare.splat", luidolt_spectral_splat_comp_spv, 4, sizeof(SplatPush), {}},
         {&rows_forward_, "glare.rows", luidolt_spectral_rows_comp_spv, 2, sizeof(FftPush), {0}},
@@ -162,17 +162,19 @@ Result<void> LuidoltSpectral::make_kernels() {
         {&gather_coverage_, "glare.gather_coverage", luidolt_spectral_gather_comp_spv, 5, sizeof(GatherPush), {0}},
         {&gather_veil_, "glare.gather", luidolt_spectral_gather_comp_spv, 5, sizeof(GatherPush), {1}},
         {&near_, "glare.near", luidolt_spectral_near_comp_spv, 7, sizeof(NearPush), {}},
-        {&apply_, "glare.apply", luidolt_spectral_apply_comp_spv, 4, sizeof(LatticePush), {}},
         {&particles_kernel_, "glare.particles", luidolt_spectral_particles_comp_spv, 4, sizeof(StructurePush), {}},
         {&structure_kernel_, "glare.structure", luidolt_spectral_structure_comp_spv, 3, sizeof(StructurePush), {}},
         {&pupil_sum_, "glare.pupil_sum", luidolt_spectral_pupil_sum_comp_spv, 3, sizeof(StructurePush), {}},
         {&kernel_kernel_, "glare.kernel", luidolt_spectral_kernel_comp_spv, 4, sizeof(KernelPush), {}},
     };
-    for (const Wanted& w : wanted) {
-        ENTOPTIC_TRY(kernel, gpu::Kernel::create(context_.device, {w.name, w.spirv, std::vector<gpu::BindingKind>(w.buffers, storage_buffer), w.push_bytes,
-                                                                   w.specialization}));
-        *w.kernel = std::move(kernel);
-    }
+    for (const Wanted& w : wanted) ENTOPTIC_CHECK(make_kernel(w));
+    return {};
+}
+
+Result<void> LuidoltSpectral::make_kernel(const Wanted& w) {
+    ENTOPTIC_TRY(kernel, gpu::Kernel::create(context_.device, {w.name, w.spirv, std::vector<gpu::BindingKind>(w.buffers, storage_buffer), w.push_bytes,
+                                                               w.specialization}));
+    *w.kernel = std::move(kernel);
     return {};
 }
 
@@ -202,6 +204,9 @@ Result<void> LuidoltSpectral::prepare() {
     if (params_.texel_px != grid_texel_px_) {
         grid_ = make_glare_grid(context_.views, static_cast<double>(params_.texel_px));
         grid_texel_px_ = params_.texel_px;
+        // The two passes over the whole picture have the lattice's step compiled in.
+        ENTOPTIC_CHECK(make_kernel({&pixels_, "glare.pixels", luidolt_spectral_pixels_comp_spv, 3, sizeof(LatticePush), {grid_.step}}));
+        ENTOPTIC_CHECK(make_kernel({&apply_, "glare.apply", luidolt_spectral_apply_comp_spv, 4, sizeof(LatticePush), {grid_.step}}));
     }
     ENTOPTIC_CHECK(make_buffers());
     prepared_ = true;
@@ -220,7 +225,7 @@ Result<void> LuidoltSpectral::make_buffers() {
     ENTOPTIC_CHECK(make_static(splat_offsets_, grid_.splat_offsets, "glare.splat_offsets"));
     ENTOPTIC_CHECK(make_static(splat_entries_, grid_.splat_entries, "glare.splat_entries"));
     ENTOPTIC_CHECK(make_static(spectrum_table_, std::vector<SpectralTable>{spectrum_}, "glare.spectrum"));
-    ENTOPTIC_CHECK(make_static(halo_table_, make_halo_table(params_, spectrum_), "glare.halo"));
+    ENTOPTIC_CHECK(make_static(halo_table_, make_halo_table(params_), "glare.halo"));
     ENTOPTIC_CHECK(make_static(cell_offsets_, particles_.cell_offsets, "glare.cells"));
     ENTOPTIC_CHECK(make_static(particle_list_, particles_.particles, "glare.particles"));
     ENTOPTIC_CHECK(make_static(particle_mean_, particles_.mean, "glare.particle_mean"));

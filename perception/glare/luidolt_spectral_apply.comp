@@ -9,6 +9,7 @@
 #include "shaders/scene_statistics.h"
 
 layout(local_size_x = 256) in;
+layout(constant_id = 0) const uint step = 4;
 
 layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer Exchange { vec3 exchange[]; };     // node: arrives, leaves
@@ -18,7 +19,7 @@ layout(scalar, binding = 3) readonly buffer Flags { uint flags[]; };
 layout(scalar, push_constant) uniform PushBlock { LatticePush push; };
 
 void main() {
-    const uint x = gl_GlobalInvocationID.x, segment = gl_WorkGroupID.y, view = gl_WorkGroupID.z, step = push.step;
+    const uint x = gl_GlobalInvocationID.x, segment = gl_WorkGroupID.y, view = gl_WorkGroupID.z;
     if (x >= push.width) return;
     // Node n stands on pixel step (n - 1): with the nearest node `column + 1`, the three are column, column + 1, column + 2.
     const uint column = (x + step / 2) / step;

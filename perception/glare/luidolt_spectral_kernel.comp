@@ -33,15 +33,15 @@ vec3 smooth_halo(float sine) {
     return mix(halo_table[i], halo_table[i + 1], place - float(i));
 }
 
-vec3 textured_halo(vec2 sines) {
+// What the texture adds to the smooth halo or takes from it.
+vec3 halo_texture(vec2 sines) {
     const float sine = length(sines);
     vec3 sum = vec3(0.0);
     for (uint i = 0; i < spectrum.count; ++i) {
         const float lambda = spectrum.lambda_um[i];
         const vec2 bin = sines * (push.patch_um / lambda);
         const float share = 1.0 - smoothstep(fade_from, fade_to, length(bin));
-        const float speckle = share > 0.0 ? mix(1.0, structure_at(bin), share) : 1.0;
-        sum += spectrum.weight[i] * (disc_scatter(push.particle_um, lambda, sine) * speckle);
+        if (share > 0.0) sum += spectrum.weight[i] * (disc_scatter(push.particle_um, lambda, sine) * share * (structure_at(bin) - 1.0));
     }
     return sum;
 }
@@ -51,7 +51,8 @@ vec3 kernel(vec2 offset) {
     const float inner = min(theta / push.angle_scale, 1.5707963);
     const float sine = sin(inner);
     const float texture_end = fade_to * spectrum.lambda_um[spectrum.count - 1] / push.patch_um;
-    const vec3 halo = push.texture_on != 0 && sine < texture_end ? textured_halo(offset * (sine / theta)) : smooth_halo(sine);
+    vec3 halo = smooth_halo(sine);
+    if (push.texture_on != 0 && sine < texture_end) halo += halo_texture(offset * (sine / theta));
     const vec3 tail = (1.0 - push.halo) * push.diffraction * aperture_tail(push.pupil_um, 1.0, sine) * spectrum.mean_lambda_um;
     const float share = (1.0 - near_share(theta, push.near)) * radius_share(theta, push.radius) * push.strength / (push.angle_scale * push.angle_scale);
     return max(tail + push.halo * halo, vec3(0.0)) * share;

@@ -10,6 +10,7 @@
 
 layout(local_size_x = 256) in;
 const uint node_rows = 8;
+layout(constant_id = 0) const uint step = 4;
 
 layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer SolidAngles { float solid_angle[]; };     // sr, 0 where the lens shows nothing
@@ -20,22 +21,22 @@ layout(scalar, push_constant) uniform PushBlock { LatticePush push; };
 shared vec3 columns[node_rows][256];
 
 void main() {
-    const uint lane = gl_LocalInvocationID.x, view = gl_WorkGroupID.z, step = push.step;
+    const uint lane = gl_LocalInvocationID.x, view = gl_WorkGroupID.z;
     const uint nodes_a_group = 256 / step - 2;
     const uint first_node = gl_WorkGroupID.x * nodes_a_group, first_row = gl_WorkGroupID.y * node_rows;
     // Node n stands on pixel step (n - 1); its segment begins half a step before. Lane 0: the segment before that of the first node.
     const int x = (int(first_node) - 2) * int(step) - int(step / 2) + int(lane);
     const bool inside = x >= 0 && x < int(push.width);
-    const uint base = view * push.width * push.height + uint(max(x, 0));
+    const uint base = view * push.width * push.height + uint(clamp(x, 0, int(push.width) - 1));
     vec3 before = vec3(0.0), here = vec3(0.0);
     for (uint segment = 0; segment < node_rows + 2; ++segment) {
         vec3 after = vec3(0.0);
         const int start = (int(first_row + segment) - 2) * int(step) - int(step / 2);
         for (uint k = 0; k < step; ++k) {
-            const int y = start + int(k);
-            if (!inside || y < 0 || y >= int(push.height)) continue;
-            const uint at = base + uint(y) * push.width;
-            const vec3 light = scene[at].rgb * solid_angle[at];
+            // Read without branches; what lies outside counts nothing.
+            const int y = start + int(k), row = clamp(y, 0, int(push.height) - 1);
+            const uint at = base + uint(row) * push.width;
+            const vec3 light = scene[at].rgb * (inside && y == row ? solid_angle[at] : 0.0);
             const vec3 w = spline_weights((float(k) - float(step / 2)) / float(step));
             before += w.x * light;
             here += w.y * light;

@@ -15,8 +15,7 @@ bool as_printed(const LuidoltSpectralParams& params) { return params.as_printed 
 
 // Eq. 10 as printed has its end points at 380 and 770 nm, where the eye sees nothing: k + 1 samples, two of them wasted.
 // Midpoints of 400..700 nm do better with fewer (trap L9).
-std::vector<double> sample_wavelengths(const LuidoltSpectralParams& params) {
-    const int k = std::clamp(static_cast<int>(std::lround(params.wavelengths)), 3, 32);
+std::vector<double> sample_wavelengths(const LuidoltSpectralParams& params, int k) {
     std::vector<double> nm;
     if (as_printed(params))
         for (int i = 0; i <= k; ++i) nm.push_back(380 + (770.0 - 380.0) * i / k);
@@ -24,43 +23,61 @@ std::vector<double> sample_wavelengths(const LuidoltSpectralParams& params) {
         for (int i = 0; i < k; ++i) nm.push_back(400 + 300 * (i + 0.5) / k);
     return nm;
 }
+int wavelength_count(const LuidoltSpectralParams& params) { return std::clamp(static_cast<int>(std::lround(params.wavelengths)), 3, 32); }
+
+struct Spectrum {
+    std::vector<double> nm;
+    std::vector<glm::dvec3> weight;      // of each wavelength in R, G, B
+    glm::dvec3 gain{0};                  // sum of the weights
+};
+
+Spectrum sample_spectrum(const LuidoltSpectralParams& params, int k) {
+    Spectrum spectrum{sample_wavelengths(params, k), {}, {}};
+    for (const double lambda : spectrum.nm) {
+        glm::dvec3 colour = luidolt_spectral::rgb_of_xyz(luidolt_spectral::wyman_xyz(lambda));
+        // Eq. 9 as printed lacks (lambda0/lambda)^2, so that long waves get too much energy (trap L7).
+        if (as_printed(params)) colour *= std::pow(lambda / (1000 * glare_lambda0_um), 2);
+        spectrum.weight.push_back(colour);
+        spectrum.gain += colour;
+    }
+    // Each channel sums to 1; as printed, only their mean does, and the picture takes on the kernel's colour.
+    const glm::dvec3 sum = spectrum.gain, norm = as_printed(params) ? glm::dvec3((sum.x + sum.y + sum.z) / 3) : sum;
+    for (glm::dvec3& weight : spectrum.weight) weight /= norm;
+    spectrum.gain = sum / norm;
+    return spectrum;
+}
+
+// For what is tabulated, more wavelengths cost nothing per frame, and with 8 the outer rings would stand apart.
+constexpr int table_wavelengths = 96;
+Spectrum table_spectrum(const LuidoltSpectralParams& params) {
+    return sample_spectrum(params, as_printed(params) ? wavelength_count(params) : table_wavelengths);
+}
 
 }  // namespace
 
 SpectralTable make_spectrum(const LuidoltSpectralParams& params) {
-    const std::vector<double> nm = sample_wavelengths(params);
-    std::vector<glm::dvec3> colours;
-    glm::dvec3 sum{0};
-    for (const double lambda : nm) {
-        glm::dvec3 colour = luidolt_spectral::rgb_of_xyz(luidolt_spectral::wyman_xyz(lambda));
-        // Eq. 9 as printed lacks (lambda0/lambda)^2, so that long waves get too much energy (trap L7).
-        if (as_printed(params)) colour *= std::pow(lambda / (1000 * glare_lambda0_um), 2);
-        colours.push_back(colour);
-        sum += colour;
-    }
-    // Each channel sums to 1; as printed, only their mean does, and the picture takes on the kernel's colour.
-    const glm::dvec3 norm = as_printed(params) ? glm::dvec3((sum.x + sum.y + sum.z) / 3) : sum;
+    const Spectrum few = sample_spectrum(params, wavelength_count(params)), many = table_spectrum(params);
     SpectralTable table{};
-    table.count = static_cast<uint>(nm.size());
-    glm::dvec3 mean_lambda{0};
-    for (std::size_t i = 0; i < nm.size(); ++i) {
-        table.lambda_um[i] = static_cast<float>(nm[i] / 1000);
-        table.weight[i] = colours[i] / norm;
-        mean_lambda += colours[i] / norm * (nm[i] / 1000);
+    table.count = static_cast<uint>(few.nm.size());
+    for (std::size_t i = 0; i < few.nm.size(); ++i) {
+        table.lambda_um[i] = static_cast<float>(few.nm[i] / 1000);
+        table.weight[i] = few.weight[i];
     }
+    glm::dvec3 mean_lambda{0};
+    for (std::size_t i = 0; i < many.nm.size(); ++i) mean_lambda += many.weight[i] * (many.nm[i] / 1000);
     table.mean_lambda_um = mean_lambda;
-    table.gain = sum / norm;
+    table.gain = few.gain;
     return table;
 }
 
-std::vector<vec3> make_halo_table(const LuidoltSpectralParams& params, const SpectralTable& spectrum) {
+std::vector<vec3> make_halo_table(const LuidoltSpectralParams& params) {
+    const Spectrum spectrum = table_spectrum(params);
     std::vector<vec3> table(halo_table_size);
     for (uint i = 0; i < halo_table_size; ++i) {
         const double sine = static_cast<double>(i) / (halo_table_size - 1);
         glm::dvec3 sum{0};
-        for (uint k = 0; k < spectrum.count; ++k)
-            sum += glm::dvec3(spectrum.weight[k]) *
-                   luidolt_spectral::disc_scatter(static_cast<double>(params.particle_diameter_um), static_cast<double>(spectrum.lambda_um[k]), sine);
+        for (std::size_t k = 0; k < spectrum.nm.size(); ++k)
+            sum += spectrum.weight[k] * luidolt_spectral::disc_scatter(static_cast<double>(params.particle_diameter_um), spectrum.nm[k] / 1000, sine);
         table[i] = sum;
     }
     return table;

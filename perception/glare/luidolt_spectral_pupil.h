@@ -19,8 +19,8 @@ constexpr double largest_pupil_mm = 9;
 
 SpectralTable make_spectrum(const LuidoltSpectralParams& params);
 
-// Halo of the particles, per sr and of energy 1, at sin(theta) = i / (halo_table_size - 1).
-std::vector<vec3> make_halo_table(const LuidoltSpectralParams& params, const SpectralTable& spectrum);
+// Halo of the particles, over the whole spectrum, per sr and of energy 1, at sin(theta) = i / (halo_table_size - 1).
+std::vector<vec3> make_halo_table(const LuidoltSpectralParams& params);
 
 // Share f of the pupil that particles cover, which is the share of the light that passes which they scatter (facts 3.3:
 // random discs, direct (1-f)^2, halo f (1-f), absorbed f).

@@ -36,8 +36,8 @@ Rgb linear_rgb(double nm) {
 }
 
 std::vector<Wave> spectrum(const LuidoltSpectralParams& p) {
-    const int k = static_cast<int>(std::lround(p.wavelengths));
     const bool printed = p.as_printed > 0.5f;
+    const int k = printed ? static_cast<int>(std::lround(p.wavelengths)) : 75;      // every 4 nm
     std::vector<Wave> waves;
     Rgb sum{};
     for (int i = 0; i < (printed ? k + 1 : k); ++i) {
@@ -88,8 +88,8 @@ public:
     const Rgb& gain() const { return gain_; }
 
 private:
-    static constexpr int entries = 16384;
-    static constexpr double first = 1e-5, last = pi;
+    static constexpr int entries = 3072;
+    static constexpr double first = 2e-4, last = pi;
     static double angle_of(int i) { return first * std::pow(last / first, static_cast<double>(i) / (entries - 1)); }
 
     // Encircled energy of the Airy pattern (Rayleigh 1881).
@@ -131,7 +131,7 @@ public:
         height_ = frame.image.height;
         printed_ = p.as_printed > 0.5f;
         measure();
-        const Kernel kernel(p, static_cast<double>(frame.eye.pupil_diameter_mm), smallest_step_);
+        const Kernel& kernel = kernel_of(p, static_cast<double>(frame.eye.pupil_diameter_mm), smallest_step_);
         near_ = std::floor(static_cast<double>(p.near_px)) * mean_step_;
         threshold_ = printed_ ? 0 : static_cast<double>(p.near_from) * frame.adaptation_cd_m2;
         const double sigma = (printed_ && p.window_sigma_deg <= 0 ? 10.0 : static_cast<double>(p.window_sigma_deg)) * pi / 180;
@@ -151,6 +151,16 @@ public:
     }
 
 private:
+    // The table takes seconds; the last one is kept.
+    const Kernel& kernel_of(const LuidoltSpectralParams& p, double pupil_mm, double pixel_rad) {
+        if (!kernel_ || std::memcmp(&p, &kernel_params_, sizeof p) != 0 || pupil_mm != kernel_pupil_mm_ || pixel_rad != kernel_pixel_rad_)
+            kernel_ = std::make_unique<Kernel>(p, pupil_mm, pixel_rad);
+        kernel_params_ = p;
+        kernel_pupil_mm_ = pupil_mm;
+        kernel_pixel_rad_ = pixel_rad;
+        return *kernel_;
+    }
+
     std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x); }
 
     glm::dvec3 towards(double x, double y) const { return geometry::geometry_direction(frame_->geometry, {x, y}); }
@@ -218,6 +228,9 @@ private:
         return sum;
     }
 
+    std::unique_ptr<Kernel> kernel_;
+    LuidoltSpectralParams kernel_params_{};
+    double kernel_pupil_mm_ = 0, kernel_pixel_rad_ = 0;
     const ReferenceFrame* frame_ = nullptr;
     int width_ = 0, height_ = 0;
     bool printed_ = false;

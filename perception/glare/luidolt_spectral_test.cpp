@@ -67,7 +67,8 @@ private:
 ImageD reference(const ImageF& picture, const EyeGeometry& g, const LuidoltSpectralParams& p, double adaptation, float pupil_mm = 4) {
     ReferenceFrame frame{convert<double>(picture), g, {}, {}, 0, false, adaptation, 1};
     frame.eye.pupil_diameter_mm = pupil_mm;
-    find_model("glare", "luidolt_spectral")->create_reference()->apply(frame, values_of(p));
+    static const std::unique_ptr<ReferenceModel> model = find_model("glare", "luidolt_spectral")->create_reference();
+    model->apply(frame, values_of(p));
     return frame.image;
 }
 
@@ -247,7 +248,7 @@ TEST(Glare, ClosedFormIsThatOfTheTable) {
         p.particles_per_mm2 = static_cast<float>(row.at("count") / (pi / 4 * std::pow(row.at("pupil_mm"), 2)));
         p.wavelengths = 16;
         const SpectralTable spectrum = make_spectrum(p);
-        const auto halo = make_halo_table(p, spectrum);
+        const auto halo = make_halo_table(p);
         const double f = covered_share(p, row.at("pupil_mm")), sine = row.at("theta_deg") * degree;   // the table is for small angles
         const double expected[3] = {row.at("R_per_sr"), row.at("G_per_sr"), row.at("B_per_sr")};
         const double place = sine * (halo_table_size - 1);
@@ -558,7 +559,7 @@ class Twin {
 public:
     Twin(const EyeGeometry& g, const LuidoltSpectralParams& p, double pupil_mm) : g_(g), p_(p), grid_(make_glare_grid(std::span(&g, 1), static_cast<double>(p.texel_px))) {
         spectrum_ = make_spectrum(p);
-        halo_ = make_halo_table(p, spectrum_);
+        halo_ = make_halo_table(p);
         // Both built kernels, mixed as the GPU mixes them.
         const double step = static_cast<double>(p.rebuild_mm), first = std::floor(pupil_mm / step) * step;
         const double blend = (pupil_mm - first) / step;
