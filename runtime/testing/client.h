@@ -20,19 +20,19 @@
 #define ENTOPTIC_CORE_FUNCTIONS(X)                                                                                                        \
     X(xrEnumerateApiLayerProperties)                                                                                                      \
     X(xrEnumerateInstanceExtensionProperties)                                                                                             \
-    X(xrCreateInstance) X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString)     \
-        X(xrGetSystem) X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession)                \
-            X(xrEnumerateReferenceSpaces) X(xrCreateReferenceSpace) X(xrGetReferenceSpaceBoundsRect) X(xrCreateActionSpace)               \
-                X(xrLocateSpace) X(xrDestroySpace) X(xrEnumerateViewConfigurations) X(xrGetViewConfigurationProperties)                   \
-                    X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain)        \
-                        X(xrEnumerateSwapchainImages) X(xrAcquireSwapchainImage) X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage)       \
-                            X(xrBeginSession) X(xrEndSession) X(xrRequestExitSession) X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame)        \
-                                X(xrLocateViews) X(xrStringToPath) X(xrPathToString) X(xrCreateActionSet) X(xrDestroyActionSet)           \
-                                    X(xrCreateAction) X(xrDestroyAction) X(xrSuggestInteractionProfileBindings)                           \
-                                        X(xrAttachSessionActionSets) X(xrGetCurrentInteractionProfile) X(xrGetActionStateBoolean)         \
-                                            X(xrGetActionStateFloat) X(xrGetActionStateVector2f) X(xrGetActionStatePose) X(xrSyncActions) \
-                                                X(xrEnumerateBoundSourcesForAction) X(xrGetInputSourceLocalizedName)                      \
-                                                    X(xrApplyHapticFeedback) X(xrStopHapticFeedback)
+    X(xrCreateInstance)                                                                                                                   \
+    X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString) X(xrGetSystem)          \
+        X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession) X(xrEnumerateReferenceSpaces) \
+            X(xrCreateReferenceSpace) X(xrGetReferenceSpaceBoundsRect) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace)          \
+                X(xrEnumerateViewConfigurations) X(xrGetViewConfigurationProperties) X(xrEnumerateViewConfigurationViews)                 \
+                    X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain) X(xrEnumerateSwapchainImages)               \
+                        X(xrAcquireSwapchainImage) X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage) X(xrBeginSession) X(xrEndSession)   \
+                            X(xrRequestExitSession) X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame) X(xrLocateViews) X(xrStringToPath)       \
+                                X(xrPathToString) X(xrCreateActionSet) X(xrDestroyActionSet) X(xrCreateAction) X(xrDestroyAction)         \
+                                    X(xrSuggestInteractionProfileBindings) X(xrAttachSessionActionSets) X(xrGetCurrentInteractionProfile) \
+                                        X(xrGetActionStateBoolean) X(xrGetActionStateFloat) X(xrGetActionStateVector2f)                   \
+                                            X(xrGetActionStatePose) X(xrSyncActions) X(xrEnumerateBoundSourcesForAction)                  \
+                                                X(xrGetInputSourceLocalizedName) X(xrApplyHapticFeedback) X(xrStopHapticFeedback)
 
 namespace entoptic::runtime::testing {
 
