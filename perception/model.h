@@ -8,6 +8,7 @@
 #include "shaders/eye_geometry.h"
 #include "shaders/scene_statistics.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -90,6 +91,22 @@ public:
     virtual Result<void> record(StageIo& io) = 0;
 };
 
+// A tone model also says beforehand what it will do: recorded after the adaptation models, before any model changes the picture. Writes
+// ObserverState::tone of each view.
+class PlansTone {
+public:
+    virtual ~PlansTone() = default;
+    virtual Result<void> plan(StageIo& io) = 0;
+};
+
+// A model that acts late on states driven by the light on the retina: recorded just before the tone models, when the picture is that
+// light. Reads the scene only.
+class ObservesRetina {
+public:
+    virtual ~ObservesRetina() = default;
+    virtual Result<void> observe(StageIo& io) = 0;
+};
+
 // The same model in double precision by an independent, slow and obvious algorithm. Works on whole images, one view.
 struct ReferenceFrame {
     ImageD image;                  // RGB, cd/m²; in place
@@ -100,11 +117,18 @@ struct ReferenceFrame {
     bool snap = false;
     double adaptation_cd_m2 = 0;   // state, in and out: written by `adaptation`, read by others
     std::uint64_t seed = 1;
+    // The tone curve of this frame, written by the tone model's plan(); see ToneCurve.
+    double exposure = 1, scene_white_cd_m2 = 130;
+    std::function<double(double)> displayed = nullptr;   // displayed of scene luminance, cd/m²; empty: no tone model
 };
 class ReferenceModel {
 public:
     virtual ~ReferenceModel() = default;
     virtual void apply(ReferenceFrame& frame, std::span<const float> parameters) = 0;
+    // As PlansTone::plan() and ObservesRetina::observe().
+    virtual void plan(ReferenceFrame&, std::span<const float>) {}
+    virtual void observe(ReferenceFrame&, std::span<const float>) {}
+    virtual bool observes_retina() const { return false; }
 };
 
 struct ModelEntry {

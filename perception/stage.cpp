@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -63,7 +64,7 @@ Result<void> Stage::allocate(const StageOptions& options) {
     ENTOPTIC_CHECK(buffer(state_, sizeof(ObserverState) * views_, gpu::BufferKind::upload, "observer state"));
     ENTOPTIC_CHECK(buffer(state_readback_, sizeof(ObserverState) * views_, gpu::BufferKind::readback, "observer state readback"));
     std::memcpy(geometry_.bytes().data(), options.views.data(), geometry_.size());
-    std::memset(state_.bytes().data(), 0, state_.size());
+    for (ObserverState& state : state_.as<ObserverState>()) state = fresh_state();
     std::memset(state_readback_.bytes().data(), 0, state_readback_.size());
     std::memset(statistics_readback_.bytes().data(), 0, statistics_readback_.size());
     downloads_.resize(views_);
@@ -155,7 +156,37 @@ Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const Image
 }
 
 void Stage::set_adaptation(float cd_m2) {
-    for (ObserverState& state : state_.as<ObserverState>()) state = {cd_m2, cd_m2, 1u, 0u};
+    for (ObserverState& state : state_.as<ObserverState>()) {
+        state = fresh_state();
+        state.adaptation_cd_m2 = state.target_cd_m2 = cd_m2;
+        state.initialised = 1;
+    }
+}
+
+// Without a tone model the panel shows what it can, as it is.
+ObserverState Stage::fresh_state() const {
+    ObserverState state{};
+    state.tone.exposure = 1;
+    state.tone.straight_until_cd_m2 = state.tone.scene_white_cd_m2 = context_.display.white_cd_m2;
+    for (uint i = 0; i < tone_points; ++i)
+        state.tone.log10_displayed[i] = std::min(static_cast<float>(i) / tone_points_per_decade - 6, std::log10(context_.display.white_cd_m2));
+    return state;
+}
+
+// Records one part of a slot's model, if it has that part.
+template <class Part>
+void Stage::record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input) {
+    auto* model = dynamic_cast<Part*>(slot.model.get());
+    if (!model || !slot.failed.empty() || slot.model->is_identity()) return;
+    StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
+    commands.begin_stage(label(slot.choice) + suffix);
+    const auto recorded = (model->*part)(io);
+    commands.barrier();
+    commands.end_stage();
+    slot.recorded = static_cast<bool>(recorded);
+    if (recorded) return;
+    slot.failed = recorded.error().message;
+    log::error("The model {} is switched off: {}", slot.choice.entry->name, slot.failed);
 }
 
 void Stage::record(gpu::Commands& commands, const FrameInput& input) {
@@ -166,22 +197,17 @@ void Stage::record(gpu::Commands& commands, const FrameInput& input) {
     commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y()}, {views_, 1, 1});
     commands.barrier();
     commands.end_stage();
-    for (Slot& slot : slots_) {
-        slot.recorded = false;
-        if (!slot.model || !slot.failed.empty() || slot.model->is_identity()) continue;
-        StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
-        commands.begin_stage(label(slot.choice));
-        const auto recorded = slot.model->record(io);
-        commands.barrier();
-        commands.end_stage();
-        if (recorded) {
-            slot.recorded = true;
-            commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
-        } else {
-            slot.failed = recorded.error().message;
-            log::error("The model {} is switched off: {}", slot.choice.entry->name, slot.failed);
-        }
-    }
+    const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
+    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), is("adaptation"));
+    const auto tone = std::find_if(slots_.begin(), slots_.end(), is("tone"));
+    for (Slot& slot : slots_) slot.recorded = false;
+    for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
+    for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
+    for (auto slot = adaptation_end; slot != tone; ++slot) record_part(*slot, "", &Model::record, commands, input);
+    for (Slot& slot : slots_) record_part(slot, ".observe", &ObservesRetina::observe, commands, input);
+    for (auto slot = tone; slot != slots_.end(); ++slot) record_part(*slot, "", &Model::record, commands, input);
+    for (Slot& slot : slots_)
+        if (slot.recorded) commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
     commands.copy(statistics_, statistics_readback_, statistics_.size());
     commands.copy(state_, state_readback_, state_.size());
     commands.barrier();

@@ -90,6 +90,8 @@ private:
     Result<void> create_kernels();
     Result<void> fill_solid_angles();
     Result<Slot> make_slot(const Choice& choice);
+    ObserverState fresh_state() const;
+    template <class Part> void record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input);
 
     gpu::Device& device_;
     ModelContext context_{device_, {}, {}, 1};

@@ -21,10 +21,23 @@ public:
         ReferenceFrame frame{cleaned(scene), options_.geometry, options_.display, input.eyes[0],
                              input.dt_s,     input.snap,        adaptation_,      options_.seed};
         if (want_picture) measure(frame.image);
-        for (std::size_t i = 0; i < models_.size(); ++i) {
-            const Choice& choice = options_.selection.choices[i];
-            if (models_[i] && (want_picture || choice.entry->slot == "adaptation")) models_[i]->apply(frame, choice.parameters);
+        frame.scene_white_cd_m2 = static_cast<double>(options_.display.white_cd_m2);
+        const auto& choices = options_.selection.choices;
+        const auto each = [&](std::size_t from, std::size_t to, auto part) {
+            for (std::size_t i = from; i < to; ++i)
+                if (models_[i]) (models_[i].get()->*part)(frame, choices[i].parameters);
+        };
+        // The order of Stage::record().
+        std::size_t optics = 0, tone = 0;
+        while (optics < models_.size() && choices[optics].entry->slot == "adaptation") ++optics;
+        while (tone < models_.size() && choices[tone].entry->slot != "tone") ++tone;
+        each(0, optics, &ReferenceModel::apply);
+        each(0, models_.size(), &ReferenceModel::plan);
+        if (want_picture || observes()) {
+            each(optics, tone, &ReferenceModel::apply);
+            each(0, models_.size(), &ReferenceModel::observe);
         }
+        if (want_picture) each(tone, models_.size(), &ReferenceModel::apply);
         adaptation_ = frame.adaptation_cd_m2;
         view_.adaptation_cd_m2 = view_.target_cd_m2 = static_cast<float>(adaptation_);
         if (want_picture) picture_ = convert<float>(frame.image);
@@ -45,6 +58,10 @@ public:
     std::string device() const override { return "CPU, double precision"; }
 
 private:
+    // Some state is driven by every frame's light on the retina, not only by those that are wanted as pictures.
+    bool observes() const {
+        return std::any_of(models_.begin(), models_.end(), [](const auto& model) { return model && model->observes_retina(); });
+    }
     ImageD cleaned(const ImageF& scene) {
         ImageD out(scene.width, scene.height, 3);
         const double most = static_cast<double>(max_scene_cd_m2);
