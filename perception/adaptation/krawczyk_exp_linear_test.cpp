@@ -64,15 +64,15 @@ SceneStatistics histogram_of(const std::vector<TileStatistics>& tiles) {
 double twin_target(const KrawczykExpLinearParams& p, const ImageF& picture, const EyeGeometry& g, vec3 gaze) {
     namespace m = krawczyk_exp_linear;
     const auto tiles = tiles_of(picture, g);
-    const double clip = m::clip_luminance(p, histogram_of(tiles));
+    const double clip = m::clip_luminance(m::gaze_of(p), histogram_of(tiles));
     const glm::dvec3 centre = m::gaze_in_view(g, glm::dvec3(gaze));
     const uint tiles_x = gpu::groups_for(g.width, tile_width);
     m::GazeSums sum = m::no_tiles();
     for (uint t = 0; t < tiles.size(); ++t) {
-        const double weight = glm::dot(centre, centre) > 0.5 ? m::tile_weight(p, g, centre, t % tiles_x, t / tiles_x) : 0;
-        sum = m::added(sum, m::tile_sums(tiles[t], weight, clip));
+        const double weight = glm::dot(centre, centre) > 0.5 ? m::tile_weight(m::gaze_of(p), g, centre, t % tiles_x, t / tiles_x) : 0;
+        sum = m::added(sum, m::tile_sums(tiles[t], weight, 0, clip));
     }
-    return m::gaze_luminance(p, sum, static_cast<double>(g.width) * g.height);
+    return m::gaze_luminance(m::gaze_of(p), sum, static_cast<double>(g.width) * g.height);
 }
 
 double reference_target(const std::vector<float>& parameters, const ImageF& picture, const EyeGeometry& g, vec3 gaze) {
