@@ -45,6 +45,7 @@ struct FrameInput {
     bool snap = false;          // states jump to their steady state (first frame, stall over 2 s, focus regained)
     std::vector<EyeInput> eyes; // one a view
     std::uint64_t index = 0;    // counts frames; seeds noise
+    bool within_display = false;   // known without looking: all light of this frame lies within the display's range (ordinary 8-bit layers)
 };
 
 // State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.

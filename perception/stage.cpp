@@ -22,6 +22,7 @@ using gpu::BindingKind;
 
 struct StatisticsPush {
     uint tile_count;
+    float black_cd_m2;
 };
 struct SizePush {
     uint width, height;
@@ -194,7 +195,7 @@ void Stage::record(gpu::Commands& commands, const FrameInput& input) {
     commands.begin_stage("statistics");
     commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
     commands.barrier();
-    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y()}, {views_, 1, 1});
+    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y(), context_.display.black_cd_m2}, {views_, 1, 1});
     commands.barrier();
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };

@@ -40,12 +40,13 @@ struct SceneStatistics {
     float median_tile_y;               // of tile means, from the histogram, cd/m²
     float gaze_y;                      // gaze-weighted mean that drives adaptation, cd/m² (written by the adaptation model)
     float sum_sr;                      // solid angle of the view, sr
+    float dark_share;                  // share of the solid angle in tiles whose mean is darker than the display's black
     uint cleaned, visible;
     uint histogram[histogram_bins];    // tiles a bin
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TileStatistics) == 28 && sizeof(SceneStatistics) == 36 + 4 * 64, "scalar layout: the GLSL side must agree");
+static_assert(sizeof(TileStatistics) == 28 && sizeof(SceneStatistics) == 40 + 4 * 64, "scalar layout: the GLSL side must agree");
 }  // namespace entoptic
 #endif
 
