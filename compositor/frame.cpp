@@ -107,9 +107,11 @@ Result<void> FramePath::ensure_stages() {
     stage.selection = options_.selection;
     stage.seed = options_.seed;
     ENTOPTIC_TRY(warp, WarpPass::create(device_, eye_geometry_));
+    ENTOPTIC_TRY(glance, GlancePass::create(device_, eye_geometry_));
     ENTOPTIC_TRY(lens, LensPass::create(device_, panel_geometry_, eye_size_, options_.lens_filter));
     ENTOPTIC_TRY(made, perception::Stage::create(device_, stage));
     warp_ = std::move(warp);
+    glance_ = std::move(glance);
     lens_ = std::move(lens);
     stage_ = std::move(made);
     return {};
@@ -156,20 +158,24 @@ PanelCurve FramePath::curve(const FrameDescription& frame) const {
     const perception::DisplayRange& display = options_.display;
     // 8-bit codes that nothing changes go to the panel as they came. Noise below half a code would leave them alone only if the device's
     // sRGB decoding were better than Vulkan asks: lavapipe 22.3 is off by up to 0.34 of a code (2.5 % of the light, codes below 16).
-    const bool codes_pass = options_.selection.choices.empty() && layers_.only_srgb8();
+    const bool codes_pass = layers_.only_srgb8() && (options_.selection.choices.empty() || is_ordinary());
     return {display.black_cd_m2, 1.0f / (display.white_cd_m2 - display.black_cd_m2),
             options_.dither && !codes_pass ? dither_amplitude : 0.0f, static_cast<std::uint32_t>(frame.index)};
 }
+
+bool FramePath::is_ordinary() const { return stage_ && stage_->obeys_residual_law() && stage_->at_rest() && layers_.within(options_.display); }
 
 Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const ImageUse& images, const WantedPictures& wanted) {
     CpuTimes times(options_.stopwatch);
     FrameOutcome outcome;
     outcome.problem = collect(frame, images);
     times.stage_ended("collect");
-    outcome.fused = options_.fuse && options_.selection.choices.empty() && !wanted.needs_stages();
+    if (!options_.selection.choices.empty()) ENTOPTIC_CHECK(ensure_stages());
+    outcome.ordinary = is_ordinary();
+    outcome.fused = options_.fuse && (options_.selection.choices.empty() || outcome.ordinary) && !wanted.needs_stages();
     if (!outcome.fused) ENTOPTIC_CHECK(ensure_stages());
     ENTOPTIC_CHECK(commands_.begin());
-    if (auto recorded = record(frame, wanted, outcome.fused, times); !recorded) {
+    if (auto recorded = record(frame, wanted, outcome, times); !recorded) {
         vkEndCommandBuffer(commands_.handle());  // so that the next frame can begin
         return forward_error(std::move(recorded.error()));
     }
@@ -181,23 +187,24 @@ Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const Ima
     if (outcome.fused) {
         const auto cleaned = fused_.cleaned();
         for (std::size_t eye = 0; eye < eye_count; ++eye) outcome.views[eye].cleaned = cleaned[eye];
-        return outcome;
+        if (!outcome.ordinary) return outcome;
     }
     stage_->accumulate_totals();
     outcome.effects = stage_->effects();
-    for (std::uint32_t eye = 0; eye < eye_count; ++eye) outcome.views[eye] = stage_->view(eye);
+    for (std::uint32_t eye = 0; eye < eye_count; ++eye) {
+        const std::uint32_t cleaned = outcome.views[eye].cleaned;
+        outcome.views[eye] = stage_->view(eye);
+        outcome.views[eye].cleaned += cleaned;
+    }
     return outcome;
 }
 
-Result<void> FramePath::record(const FrameDescription& frame, const WantedPictures& wanted, bool fused, CpuTimes& times) {
+Result<void> FramePath::record(const FrameDescription& frame, const WantedPictures& wanted, const FrameOutcome& path, CpuTimes& times) {
     for (Download* download : {&warp_download_, &perceive_download_, &lens_download_, &panel_download_, &seen_download_})
         download->filled = false;
     transfer_images(true);
-    if (fused) {
-        commands_.begin_stage("fused");
-        ENTOPTIC_CHECK(fused_.record(commands_, layers_, curve(frame), panel()));
-        commands_.end_stage();
-        times.stage_ended("fused");
+    if (path.fused) {
+        ENTOPTIC_CHECK(record_fused(frame, path.ordinary, times));
     } else {
         ENTOPTIC_CHECK(record_stages(frame, wanted, times));
     }
@@ -211,6 +218,22 @@ Result<void> FramePath::record(const FrameDescription& frame, const WantedPictur
     return {};
 }
 
+Result<void> FramePath::record_fused(const FrameDescription& frame, bool ordinary, CpuTimes& times) {
+    if (ordinary) {
+        commands_.begin_stage("glance");
+        ENTOPTIC_CHECK(glance_->record(commands_, layers_, *stage_));
+        commands_.end_stage();
+        commands_.barrier();
+        stage_->record_at_rest(commands_, frame.perception);
+        times.stage_ended("glance");
+    }
+    commands_.begin_stage("fused");
+    ENTOPTIC_CHECK(fused_.record(commands_, layers_, curve(frame), panel()));
+    commands_.end_stage();
+    times.stage_ended("fused");
+    return {};
+}
+
 Result<void> FramePath::record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times) {
     commands_.begin_stage("warp");
     ENTOPTIC_TRY(scene, warp_->record(commands_, layers_, *stage_));
@@ -221,7 +244,9 @@ Result<void> FramePath::record_stages(const FrameDescription& frame, const Wante
         commands_.barrier();
     }
     times.stage_ended("warp");
-    stage_->record(commands_, frame.perception);
+    perception::FrameInput input = frame.perception;
+    input.within_display = layers_.within(options_.display);
+    stage_->record(commands_, input);
     const SeenImage seen{scene.pixels, scene.size};
     if (wanted.perceive) ENTOPTIC_CHECK(download(*seen.pixels, perceive_download_, "perceive"));
     times.stage_ended("perceive");

@@ -66,6 +66,7 @@ struct StageMs {
 // What became of a frame.
 struct FrameOutcome {
     bool fused = false;
+    bool ordinary = false;  // models were chosen, but all light was known to be within the panel's range: nothing to simulate
     std::vector<StageMs> gpu_ms, cpu_ms;  // by stage, in order
     std::vector<perception::EffectOutcome> effects;
     std::array<perception::ViewOutcome, eye_count> views;  // zeroes where nothing was simulated, but for `cleaned`
@@ -110,10 +111,13 @@ private:
     Result<void> ensure_stages();
     std::string collect(const FrameDescription& frame, const ImageUse& images);
     void transfer_images(bool acquire);
-    Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, bool fused, CpuTimes& times);
+    Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, const FrameOutcome& path, CpuTimes& times);
+    Result<void> record_fused(const FrameDescription& frame, bool ordinary, CpuTimes& times);
     Result<void> record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times);
     Result<void> download(const gpu::Buffer& from, Download& into, const char* name);
     PanelCurve curve(const FrameDescription& frame) const;
+    // The frame's light is within the panel's range, and no state of the eye changes how it is seen.
+    bool is_ordinary() const;
     ImageF eye_picture(const Download& download, int eye) const;
     Image8 code_picture(const Download& download, PictureSize size, int eye) const;
 
@@ -127,6 +131,7 @@ private:
     FusedPass fused_;
     std::unique_ptr<perception::Stage> stage_;
     std::optional<WarpPass> warp_;
+    std::optional<GlancePass> glance_;
     std::optional<LensPass> lens_;
     std::optional<SeenThroughLensPass> seen_;
     Download warp_download_, perceive_download_, lens_download_, panel_download_, seen_download_;

@@ -4,6 +4,7 @@
 
 #include "compositor/clear.comp.h"
 #include "compositor/fused.comp.h"
+#include "compositor/glance.comp.h"
 #include "compositor/lens.comp.h"
 #include "compositor/panel.comp.h"
 #include "compositor/seen.comp.h"
@@ -158,6 +159,15 @@ void LayerTable::clear() {
     only_srgb8_ = true;
 }
 
+bool LayerTable::within(const perception::DisplayRange& display) const {
+    if (has_float_) return false;
+    for (const auto& views : views_)
+        for (const LayerView& view : views)
+            if (!(view.offset_cd >= 0.999f * display.black_cd_m2 && view.cd_per_unit >= 0 && view.cd_per_unit + view.offset_cd <= 1.000001f * display.white_cd_m2))
+                return false;
+    return true;
+}
+
 void LayerTable::add(int eye, const LayerView& view, const SampledImage& image) {
     auto& views = views_[std::size_t(eye)];
     if (views.size() >= layer_slots) return;
@@ -232,6 +242,25 @@ Result<SceneImage> WarpPass::record(gpu::Commands& commands, const LayerTable& l
                           hidden.groups());
     }
     return SceneImage{&stage.scene(), grids_.size()};
+}
+
+Result<GlancePass> GlancePass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& geometry) {
+    GlancePass pass;
+    ENTOPTIC_TRY(grids, EyeGrids::create(device, geometry, tile_width, tile_height, "glance"));
+    pass.grids_ = std::move(grids);
+    pass.kernels_ = LayerKernels(device, "glance", glance_comp_spv, sizeof(TilePush), false, {});
+    return pass;
+}
+
+Result<void> GlancePass::record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage) {
+    const std::uint32_t tiles = stage.tiles_x() * stage.tiles_y();
+    for (int eye = 0; eye < eye_count; ++eye) {
+        ENTOPTIC_TRY(kernel, kernels_.get(layers.count(eye), layers.has_float()));
+        std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), grids_.shown(eye).list, stage.tiles(), stage.solid_angle()};
+        layers.append_images(eye, bindings);
+        commands.dispatch(*kernel, bindings, bytes_of(TilePush{std::uint32_t(eye), tiles}), {gpu::groups_for(tiles, 64), 1, 1});
+    }
+    return {};
 }
 
 Result<LensPass> LensPass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel, PictureSize eye_size,

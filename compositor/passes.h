@@ -59,6 +59,8 @@ public:
     bool has_float() const { return has_float_; }
     // All layers are 8-bit codes of the panel's own curve: what is between two codes is a product of resampling only.
     bool only_srgb8() const { return only_srgb8_; }
+    // The formats and scales of all layers keep their light within the panel's range: no pixel has to be looked at to know.
+    bool within(const perception::DisplayRange& display) const;
     const std::vector<VkImage>& images() const { return unique_; }  // each once
     // Bindings 1 and 5..20 of layers.glsl.
     gpu::Binding layers() const { return buffer_; }
@@ -107,6 +109,18 @@ private:
     EyeGrids grids_;
     LayerKernels warp_;
     gpu::Kernel clear_;
+};
+
+// Layers → statistics of the scene's tiles, from a few points of each: what an eye that is shown the layers as they are adapts to.
+class GlancePass {
+public:
+    static Result<GlancePass> create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& geometry);
+    // Writes stage.tiles(), on the grid of `geometry`, which the stage was made with too.
+    Result<void> record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage);
+
+private:
+    EyeGrids grids_;
+    LayerKernels kernels_;
 };
 
 enum class LensFilter { bilinear, catmull_rom };

@@ -46,6 +46,7 @@ struct FrameInput {
     std::vector<EyeInput> eyes; // one a view
     std::uint64_t index = 0;    // counts frames; seeds noise
     bool within_display = false;   // known without looking: all light of this frame lies within the display's range (ordinary 8-bit layers)
+    bool tiles_only = false;       // the scene was not written in this frame, only the statistics of its tiles
 };
 
 // State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.
@@ -86,6 +87,9 @@ public:
     virtual void set_parameters(std::span<const float> parameters) = 0;
     // True when these parameters change nothing for any scene: the model is not recorded at all.
     virtual bool is_identity() const { return false; }
+    // True when these parameters leave every picture alone whose light is within the display's range (FrameInput::within_display), once the
+    // model's states are at rest: its gate then says that it did not run. Adaptation, which never touches the picture, always does.
+    virtual bool obeys_residual_law() const { return false; }
     // Records the model for one frame: gate, then work through indirect dispatches, so that a gated frame costs nothing.
     // Every dispatch that depends on an earlier one is preceded by io.commands.barrier(); the stage puts barriers around the model.
     // Errors switch the model off, with the reason in the report; the frame is shown without it.

@@ -6,6 +6,10 @@ namespace entoptic::perception {
 std::span<const Preset> presets() {
     static const std::vector<Preset> table = {
         {"off", "No simulation: layers go through warp and lens to the panel, bit for bit", {}, {}},
+        {"combined",
+         "What the panel cannot show is simulated, the rest is shown as it is: ordinary applications keep their codes",
+         {{"adaptation", "krawczyk_exp_log"}, {"tone", "display_identity"}},
+         {}},
         {"luidolt2020",
          "Luidolt et al. 2020 with its errors corrected (facts: traps L1, L2, L5-L9, L12, L14, L18-L20, L23)",
          {{"adaptation", "krawczyk_exp_linear"},

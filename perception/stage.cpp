@@ -195,18 +195,51 @@ void Stage::record(gpu::Commands& commands, const FrameInput& input) {
     commands.begin_stage("statistics");
     commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
     commands.barrier();
-    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y(), context_.display.black_cd_m2}, {views_, 1, 1});
-    commands.barrier();
+    record_view_statistics(commands);
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
     const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), is("adaptation"));
     const auto tone = std::find_if(slots_.begin(), slots_.end(), is("tone"));
-    for (Slot& slot : slots_) slot.recorded = false;
+    for (Slot& slot : slots_) slot.recorded = slot.resting = false;
     for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
     for (auto slot = adaptation_end; slot != tone; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".observe", &ObservesRetina::observe, commands, input);
     for (auto slot = tone; slot != slots_.end(); ++slot) record_part(*slot, "", &Model::record, commands, input);
+    record_readbacks(commands);
+}
+
+bool Stage::obeys_residual_law() const {
+    return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return !s.model || !s.failed.empty() || s.model->is_identity() || s.model->obeys_residual_law(); });
+}
+
+bool Stage::at_rest() const {
+    return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.gate_readback.as<Gate>()[0].ran == 0; });
+}
+
+void Stage::record_at_rest(gpu::Commands& commands, const FrameInput& input) {
+    assert(input.eyes.size() == views_);
+    FrameInput inside = input;
+    inside.within_display = inside.tiles_only = true;
+    commands.begin_stage("statistics");
+    record_view_statistics(commands);
+    commands.end_stage();
+    for (Slot& slot : slots_) {
+        const bool adapts = slot.choice.entry->slot == "adaptation";
+        slot.recorded = false;
+        slot.resting = !adapts && slot.model && slot.failed.empty() && !slot.model->is_identity();
+        if (adapts) record_part(slot, "", &Model::record, commands, inside);
+    }
+    for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, inside);
+    record_readbacks(commands);
+}
+
+void Stage::record_view_statistics(gpu::Commands& commands) {
+    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y(), context_.display.black_cd_m2}, {views_, 1, 1});
+    commands.barrier();
+}
+
+void Stage::record_readbacks(gpu::Commands& commands) {
     for (Slot& slot : slots_)
         if (slot.recorded) commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
     commands.copy(statistics_, statistics_readback_, statistics_.size());
@@ -236,11 +269,12 @@ std::vector<EffectOutcome> Stage::effects() const {
     std::vector<EffectOutcome> outcomes;
     for (const Slot& slot : slots_) {
         const Gate& gate = slot.gate_readback.as<Gate>()[0];
-        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded, false, slot.failed, {}, 0};
+        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded || slot.resting, false, slot.failed, {}, 0};
         // A model that has no gate never sets a counter: it always runs.
-        outcome.gated = slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0;
-        outcome.bound_codes = outcome.gated ? gate.bound : 0;
+        outcome.gated = slot.resting || (slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0);
+        outcome.bound_codes = outcome.gated && !slot.resting ? gate.bound : 0;
         if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
+        else if (slot.resting) outcome.why = "not needed: all light of the frame is within the display's range";
         else if (!slot.recorded) outcome.why = "its parameters change nothing";
         else if (outcome.gated) outcome.why = fmt::format("cannot be seen in this frame (at most {:.3g} of a code value)", gate.bound);
         else outcome.why = "runs";

@@ -61,6 +61,14 @@ public:
     // Records statistics and all models. The scene must have been written earlier in the same batch, with a barrier() after it.
     // Each model is a stage of `commands` ("perceive.glare"). Leaves a barrier behind.
     void record(gpu::Commands& commands, const FrameInput& input);
+    // The models leave light within the display's range alone (Model::obeys_residual_law), and
+    bool obeys_residual_law() const;
+    // none of them changed the picture recorded last: no state of the eye shows. True before the first frame.
+    bool at_rest() const;
+    // For a frame that needs no picture from the stage: both of the above, and all its light within the display's range. tiles() must have been
+    // written earlier in the batch; adaptation and the tone curve go on, the models are not recorded.
+    void record_at_rest(gpu::Commands& commands, const FrameInput& input);
+    const gpu::Buffer& tiles() const { return tiles_; }
     // Records the copy of one view of the image to host memory; read it with downloaded() after the batch was waited for.
     Result<void> record_download(gpu::Commands& commands, std::uint32_t view);
     ImageF downloaded(std::uint32_t view) const;   // RGB
@@ -83,8 +91,10 @@ private:
         std::unique_ptr<Model> model;
         gpu::Buffer gate, gate_readback;
         std::string failed;
-        bool recorded = false;
+        bool recorded = false, resting = false;
     };
+    void record_view_statistics(gpu::Commands& commands);
+    void record_readbacks(gpu::Commands& commands);
     explicit Stage(gpu::Device& device) : device_(device) {}
     Result<void> allocate(const StageOptions& options);
     Result<void> create_kernels();

@@ -29,6 +29,7 @@ public:
         return model;
     }
     void set_parameters(std::span<const float> values) override { std::memcpy(&params_, values.data(), sizeof params_); }
+    bool obeys_residual_law() const override { return true; }
     Result<void> record(StageIo& io) override {
         // No step for dt <= 0 and NaN. An infinite one would be 0 times infinity in the series.
         const float dt_s = io.input.dt_s > 0 ? static_cast<float>(std::min(io.input.dt_s, 1e6)) : 0.0f;
@@ -36,7 +37,7 @@ public:
             const EyeInput& eye = io.input.eyes[view];
             const vec3 gaze(gaze::gaze_in_view(views_[view], glm::dvec3(eye.gaze_direction)));
             const Push push{params_, gaze, dt_s, view, io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, !(eye.eyelid_open >= lid_counts_as_closed),
-                            gaze_of_(params_).retinal > 0.5f, io.width * io.height <= most_single_pixels};
+                            gaze_of_(params_).retinal > 0.5f, !io.input.tiles_only && io.width * io.height <= most_single_pixels};
             if (memory_)
                 io.commands.dispatch(kernel_, {io.tiles, io.geometry, io.statistics, io.state, io.scene, io.solid_angle, memory_}, push, {1, 1, 1});
             else

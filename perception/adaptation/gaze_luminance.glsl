@@ -3,7 +3,7 @@
 #ifndef ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_LUMINANCE_GLSL
 #define ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_LUMINANCE_GLSL
 
-#include "perception/adaptation/gaze_params.h"
+#include "perception/adaptation/gaze_weighting.h"
 #include "shaders/geometry.glsl"
 #include "shaders/scene_statistics.h"
 

@@ -52,6 +52,7 @@ public:
         return model;
     }
     void set_parameters(std::span<const float> v) override { params_ = {v[0], v[1], v[2], v[3], v[4]}; }
+    bool obeys_residual_law() const override { return true; }
     Result<void> plan(StageIo& io) override {
         const double dt_s = io.input.dt_s > 0 ? io.input.dt_s : 0, tau_s = static_cast<double>(params_.smoothing_s);
         const float rate = io.input.snap || tau_s <= 0 ? 1.0f : static_cast<float>(-std::expm1(-dt_s / tau_s));

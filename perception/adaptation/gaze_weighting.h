@@ -1,6 +1,6 @@
 // How the luminance that drives adaptation is weighted; the part that the parameters of all adaptation models have in common.
-#ifndef ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_PARAMS_H
-#define ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_PARAMS_H
+#ifndef ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_WEIGHTING_H
+#define ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_WEIGHTING_H
 
 #include "shaders/shared_types.h"
 
