@@ -37,7 +37,7 @@ public:
             const EyeInput& eye = io.input.eyes[view];
             const vec3 gaze(gaze::gaze_in_view(views_[view], glm::dvec3(eye.gaze_direction)));
             const Push push{params_, gaze, dt_s, view, io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, !(eye.eyelid_open >= lid_counts_as_closed),
-                            gaze_of_(params_).retinal > 0.5f, !io.input.tiles_only && io.width * io.height <= most_single_pixels};
+                            gaze_of_(params_).retinal > 0.5f, !io.input.tiles_only};
             if (memory_)
                 io.commands.dispatch(kernel_, {io.tiles, io.geometry, io.statistics, io.state, io.scene, io.solid_angle, memory_}, push, {1, 1, 1});
             else
@@ -51,12 +51,9 @@ private:
         Params params;
         vec3 gaze;
         float dt_s;
-        uint view, tiles_x, tiles_y, snap, lid_closed, veil, by_pixel;
+        uint view, tiles_x, tiles_y, snap, lid_closed, veil, pixels_known;
     };
     static constexpr float lid_counts_as_closed = 0.5f;
-    // Pictures of at most this many pixels (128x128, the paper's own reduction) are weighted pixel by pixel: their tiles of 32x8 pixels
-    // would be wider than the Gaussian around the gaze.
-    static constexpr std::uint32_t most_single_pixels = 128 * 128;
 
     gpu::Kernel kernel_;
     gpu::Buffer memory_;

@@ -25,20 +25,38 @@ layout(scalar, push_constant) uniform Push {
     uint snap;              // 1: the state becomes the target
     uint lid_closed;        // 1: the state holds
     uint veil;              // 1: the straylight of the whole field counts
-    uint by_pixel;          // 1: a small picture, whose tiles are wider than the Gaussian: each pixel counts by itself
+    uint pixels_known;      // 1: the scene was written in this frame, 0: only its tiles
 } push;
 
 shared GazeSums parts[256];
 shared float clip_cd_m2;
 
-// One pixel, as a tile of its own.
-GazeSums pixel_sums(EyeGeometry g, uint p, bool gaze_known) {
-    const uint at = push.view * g.width * g.height + p;
-    const float sr = solid_angle[at], y = luminance(scene[at].rgb);
-    const TileStatistics pixel = TileStatistics(y * sr, sr, y, y, y, 0u, sr > 0.0 ? 1u : 0u);
-    const vec2 px = vec2(p % g.width, p / g.width) + 0.5;
-    const float scatter = push.veil == 1u ? straylight(gaze_known ? angle_between(geometry_direction(g, px), push.gaze) : 3.14159) : 0.0;
-    return tile_sums(pixel, gaze_known ? pixel_weight(gaze_of(push.params), g, push.gaze, px) : 0.0, scatter, clip_cd_m2);
+float scatter_at(float angle) { return push.veil == 1u ? straylight(angle) : 0.0; }
+
+// A tile's light as if it were spread evenly over it.
+GazeSums whole_tile(EyeGeometry g, uint x, uint y, bool gaze_known) {
+    const float weight = gaze_known ? tile_weight(gaze_of(push.params), g, push.gaze, x, y) : 0.0;
+    const TileStatistics tile = tiles[(push.view * push.tiles_y + y) * push.tiles_x + x];
+    return tile_sums(tile, weight, scatter_at(tile_angle(g, push.gaze, x, y)), clip_cd_m2);
+}
+
+// One pixel, as a tile of its own. `kept`: what the clipping of outliers leaves of its tile's light.
+GazeSums pixel_sums(EyeGeometry g, uvec2 pixel, float kept) {
+    const uint at = (push.view * g.height + pixel.y) * g.width + pixel.x;
+    const float sr = solid_angle[at], y = kept * luminance(scene[at].rgb);
+    const TileStatistics alone = TileStatistics(y * sr, sr, y, y, y, 0u, sr > 0.0 ? 1u : 0u);
+    const float angle = angle_between(geometry_direction(g, vec2(pixel) + 0.5), push.gaze);
+    return tile_sums(alone, gaussian(gaze_of(push.params), angle), scatter_at(angle), 1e30);
+}
+
+GazeSums pixels_of_tile(EyeGeometry g, uint x, uint y) {
+    GazeSums sum = no_tiles();
+    const TileStatistics tile = tiles[(push.view * push.tiles_y + y) * push.tiles_x + x];
+    const float kept = min(1.0, clip_cd_m2 * tile.sum_sr / max(tile.sum_y_sr, 1e-30));
+    const uvec2 low = uvec2(x * tile_width, y * tile_height), high = min(low + uvec2(tile_width, tile_height), uvec2(g.width, g.height));
+    for (uint row = low.y; row < high.y; ++row)
+        for (uint column = low.x; column < high.x; ++column) sum = added(sum, pixel_sums(g, uvec2(column, row), kept));
+    return sum;
 }
 
 void main() {
@@ -49,12 +67,11 @@ void main() {
     const uint tile_count = push.tiles_x * push.tiles_y;
     const bool gaze_known = dot(push.gaze, push.gaze) > 0.5;
     GazeSums sum = no_tiles();
-    for (uint p = i; push.by_pixel == 1u && p < g.width * g.height; p += 256u) sum = added(sum, pixel_sums(g, p, gaze_known));
-    for (uint t = i; push.by_pixel == 0u && t < tile_count; t += 256u) {
+    for (uint t = i; t < tile_count; t += 256u) {
         const uint x = t % push.tiles_x, y = t / push.tiles_x;
-        const float weight = gaze_known ? tile_weight(gaze_of(push.params), g, push.gaze, x, y) : 0.0;
-        const float scatter = push.veil == 1u ? straylight(tile_angle(g, push.gaze, x, y)) : 0.0;
-        sum = added(sum, tile_sums(tiles[push.view * tile_count + t], weight, scatter, clip_cd_m2));
+        sum = added(sum, push.pixels_known == 1u && gaze_known && tile_is_coarse(gaze_of(push.params), g, push.gaze, x, y)
+                             ? pixels_of_tile(g, x, y)
+                             : whole_tile(g, x, y, gaze_known));
     }
     parts[i] = sum;
     for (uint stride = 128u; stride > 0u; stride /= 2u) {

@@ -46,10 +46,20 @@ FN real tile_angle(EyeGeometry g, rvec3 gaze, uint tile_x, uint tile_y) {
     return angle_between(geometry_direction(g, min(px, rvec2(real(g.width), real(g.height)))), gaze);
 }
 
-// Weight of one point of the eye image: exp(-angle²/2σ²).
-FN real pixel_weight(GazeParams p, EyeGeometry g, rvec3 gaze, rvec2 px) {
-    real angle = angle_between(geometry_direction(g, px), gaze) / (real(p.sigma_gaze_deg) * LIT(0.017453292519943295));
-    return exp(LIT(-0.5) * angle * angle);
+// Weight of a point `angle` (radians) from the gaze: exp(-angle²/2σ²).
+FN real gaussian(GazeParams p, real angle) {
+    real sigmas = angle / (real(p.sigma_gaze_deg) * LIT(0.017453292519943295));
+    return exp(LIT(-0.5) * sigmas * sigmas);
+}
+
+// True where the Gaussian changes so much within a tile that its pixels have to be weighted one by one: wider than a quarter of σ, and within
+// 3.2 σ of the gaze.
+FN bool tile_is_coarse(GazeParams p, EyeGeometry g, rvec3 gaze, uint tile_x, uint tile_y) {
+    real sigma = real(p.sigma_gaze_deg) * LIT(0.017453292519943295);
+    rvec2 corner = rvec2(real(tile_x * tile_width), real(tile_y * tile_height));
+    rvec2 across = rvec2(min(corner.x + real(tile_width), real(g.width)), corner.y);
+    real width = angle_between(geometry_direction(g, corner), geometry_direction(g, across));
+    return width > LIT(0.25) * sigma && tile_angle(g, gaze, tile_x, tile_y) < LIT(3.2) * sigma + width;
 }
 
 // Mean weight of a tile's four 8×8-pixel blocks: exp(-angle²/2σ²) at their centres.
