@@ -199,7 +199,9 @@ void Stage::record(gpu::Commands& commands, const FrameInput& input) {
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
     const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), is("adaptation"));
-    const auto tone = std::find_if(slots_.begin(), slots_.end(), is("tone"));
+    // Where scene light ends: without a tone model, before the first model that acts on what it observed.
+    const auto tone = std::find_if(slots_.begin(), slots_.end(),
+                                   [&](const Slot& slot) { return is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get()); });
     for (Slot& slot : slots_) slot.recorded = slot.resting = false;
     for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
