@@ -45,6 +45,7 @@ struct FrameInput {
     bool snap = false;          // states jump to their steady state (first frame, stall over 2 s, focus regained)
     std::vector<EyeInput> eyes; // one a view
     std::uint64_t index = 0;    // counts frames; seeds noise
+    float vergence_dioptre = -1;    // 1/m: where both lines of sight meet; negative: nobody has measured it
 };
 
 // State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.
@@ -68,6 +69,8 @@ struct StageIo {
     std::uint32_t tiles_x = 0, tiles_y = 0;
     DisplayRange display;
     const FrameInput& input;
+    const gpu::Buffer* dioptre = nullptr;   // float a pixel, as solid_angle: 1 over the distance from the eye, 1/m; 0 infinity, negative
+                                            // unknown. Null when nobody knows a depth in this frame, or no chosen model NeedsDepth.
 };
 
 struct ModelContext {
@@ -107,6 +110,12 @@ public:
     virtual Result<void> observe(StageIo& io) = 0;
 };
 
+// A model that reads StageIo::dioptre. Only while such a model is chosen and does something is depth kept and computed.
+class NeedsDepth {
+public:
+    virtual ~NeedsDepth() = default;
+};
+
 // The same model in double precision by an independent, slow and obvious algorithm. Works on whole images, one view.
 struct ReferenceFrame {
     ImageD image;                  // RGB, cd/m²; in place
@@ -120,6 +129,9 @@ struct ReferenceFrame {
     // The tone curve of this frame, written by the tone model's plan(); see ToneCurve.
     double exposure = 1, scene_white_cd_m2 = 130;
     std::function<double(double)> displayed = nullptr;   // displayed of scene luminance, cd/m²; empty: no tone model
+    ImageD dioptre{};              // one channel, as StageIo::dioptre; empty: no depth is known
+    double vergence_dioptre = -1;  // as FrameInput's
+    double focus_dioptre = -1;     // state, in and out: written by `dof`; negative before the first known depth
 };
 class ReferenceModel {
 public:
