@@ -47,6 +47,7 @@ struct FrameInput {
     std::uint64_t index = 0;    // counts frames; seeds noise
     bool within_display = false;   // known without looking: all light of this frame lies within the display's range (ordinary 8-bit layers)
     bool tiles_only = false;       // the scene was not written in this frame, only the statistics of its tiles
+    float vergence_dioptre = -1;    // 1/m: where both lines of sight meet; negative: nobody has measured it
 };
 
 // State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.
@@ -70,6 +71,8 @@ struct StageIo {
     std::uint32_t tiles_x = 0, tiles_y = 0;
     DisplayRange display;
     const FrameInput& input;
+    const gpu::Buffer* dioptre = nullptr;   // float a pixel, as solid_angle: 1 over the distance from the eye, 1/m; 0 infinity, negative
+                                            // unknown. Null when nobody knows a depth in this frame, or no chosen model NeedsDepth.
 };
 
 struct ModelContext {
@@ -112,6 +115,12 @@ public:
     virtual Result<void> observe(StageIo& io) = 0;
 };
 
+// A model that reads StageIo::dioptre. Only while such a model is chosen and does something is depth kept and computed.
+class NeedsDepth {
+public:
+    virtual ~NeedsDepth() = default;
+};
+
 // The same model in double precision by an independent, slow and obvious algorithm. Works on whole images, one view.
 struct ReferenceFrame {
     ImageD image;                  // RGB, cd/m²; in place
@@ -125,6 +134,9 @@ struct ReferenceFrame {
     // The tone curve of this frame, written by the tone model's plan(); see ToneCurve.
     double exposure = 1, scene_white_cd_m2 = 130;
     std::function<double(double)> displayed = nullptr;   // displayed of scene luminance, cd/m²; empty: no tone model
+    ImageD dioptre{};              // one channel, as StageIo::dioptre; empty: no depth is known
+    double vergence_dioptre = -1;  // as FrameInput's
+    double focus_dioptre = -1;     // state, in and out: written by `dof`; negative before the first known depth
 };
 class ReferenceModel {
 public:

@@ -30,6 +30,10 @@ std::span<const Preset> presets() {
           {"acuity", "as_printed", 1},
           {"tone", "as_printed", 1},
           {"mesopic", "as_printed", 1}}},
+        {"liu2021",
+         "Liu et al. 2021: depth of field with coloured edges alone (facts: traps Li1-Li5); needs an application that submits depth",
+         {{"dof", "liu_range"}},
+         {{"dof", "lca", 1}, {"dof", "roulette", 1}}},
     };
     return table;
 }

@@ -28,6 +28,8 @@ struct SizePush {
     uint width, height;
 };
 
+float dioptre_of_metres(float metres) { return metres > 0 ? std::min(1 / metres, max_dioptre) : unknown_dioptre; }
+
 std::string label(const Choice& choice) { return fmt::format("perceive.{}", choice.entry->slot); }
 
 }  // namespace
@@ -132,10 +134,19 @@ Result<void> Stage::select(const Selection& selection) {
     }
     slots_ = std::move(next);
     selection_ = selection;
+    if (!wants_depth() || dioptre_) return {};
+    ENTOPTIC_TRY(dioptre, gpu::Buffer::create(device_, view_bytes() / 4 * views_, gpu::BufferKind::device, "dioptres"));
+    dioptre_ = std::move(dioptre);
     return {};
 }
 
-Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images) {
+bool Stage::wants_depth() const {
+    return std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+        return slot.failed.empty() && slot.model && dynamic_cast<NeedsDepth*>(slot.model.get()) && !slot.model->is_identity();
+    });
+}
+
+Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images, std::span<const ImageF> depths) {
     const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * 3 * sizeof(float);
     if (images.size() != views_) return failure(fmt::format("The stage has {} views but {} pictures came.", views_, images.size()));
     if (!upload_) {
@@ -151,8 +162,28 @@ Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const Image
     }
     commands.begin_stage("ingest");
     commands.dispatch(ingest_, {upload_, solid_angle_, scene_}, SizePush{width_, height_}, {gpu::groups_for(width_, 32), gpu::groups_for(height_, 8), views_});
+    if (!depths.empty() && wants_depth()) ENTOPTIC_CHECK(record_depth(commands, depths));
     commands.barrier();
     commands.end_stage();
+    return {};
+}
+
+Result<void> Stage::record_depth(gpu::Commands& commands, std::span<const ImageF> depths) {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    if (depths.size() != views_) return failure(fmt::format("The stage has {} views but {} depths came.", views_, depths.size()));
+    if (!depth_upload_) {
+        ENTOPTIC_TRY(upload, gpu::Buffer::create(device_, dioptre_.size(), gpu::BufferKind::upload, "depth upload"));
+        depth_upload_ = std::move(upload);
+    }
+    for (std::uint32_t v = 0; v < views_; ++v) {
+        const ImageF& depth = depths[v];
+        if (depth.width != static_cast<int>(width_) || depth.height != static_cast<int>(height_) || depth.channels != 1)
+            return failure(fmt::format("A depth of {}x{} with 1 channel was expected, {}x{} with {} came.", width_, height_, depth.width, depth.height,
+                                       depth.channels));
+        std::ranges::transform(depth.data, depth_upload_.as<float>().begin() + static_cast<std::ptrdiff_t>(v * pixels), dioptre_of_metres);
+    }
+    commands.copy(depth_upload_, dioptre_, dioptre_.size());
+    depth_written();
     return {};
 }
 
@@ -179,7 +210,8 @@ template <class Part>
 void Stage::record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input) {
     auto* model = dynamic_cast<Part*>(slot.model.get());
     if (!model || !slot.failed.empty() || slot.model->is_identity()) return;
-    StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
+    StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input,
+               has_depth_ ? &dioptre_ : nullptr};
     commands.begin_stage(label(slot.choice) + suffix);
     const auto recorded = (model->*part)(io);
     commands.barrier();
@@ -247,6 +279,7 @@ void Stage::record_readbacks(gpu::Commands& commands) {
     commands.copy(statistics_, statistics_readback_, statistics_.size());
     commands.copy(state_, state_readback_, state_.size());
     commands.barrier();
+    has_depth_ = false;
 }
 
 Result<void> Stage::record_download(gpu::Commands& commands, std::uint32_t view) {

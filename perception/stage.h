@@ -51,11 +51,17 @@ public:
     std::uint32_t views() const { return views_; }
     std::uint32_t tiles_x() const { return gpu::groups_for(width_, tile_width); }
     std::uint32_t tiles_y() const { return gpu::groups_for(height_, tile_height); }
+    // Whether a chosen model wants to know how far away things are. Then whoever writes the scene may also write depth() (float a pixel, laid
+    // out as solid_angle(): 1/m, 0 infinity, negative unknown) and says so with depth_written(), for this frame. Nothing is kept otherwise.
+    bool wants_depth() const;
+    const gpu::Buffer& depth() const { return dioptre_; }
+    void depth_written() { has_depth_ = true; }
     std::size_t view_bytes() const { return std::size_t(width_) * height_ * sizeof(vec4); }
 
     // For pictures that come from the CPU: uploads RGB (one image a view, of the stage's size, any values) and records the pass that
-    // cleans it and writes the scene. Waits for nothing; call before record() in the same batch.
-    Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images);
+    // cleans it and writes the scene. Waits for nothing; call before record() in the same batch. `depths`: none, or one image a view, one
+    // channel, metres from the eye along the line of sight; infinity is far, NaN, zero and negatives are unknown.
+    Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images, std::span<const ImageF> depths = {});
     // The eyes have been adapted to this luminance (cd/m²) until now: the state before the next frame. Call between frames.
     void set_adaptation(float cd_m2);
     // Records statistics and all models. The scene must have been written earlier in the same batch, with a barrier() after it.
@@ -99,6 +105,7 @@ private:
     Result<void> allocate(const StageOptions& options);
     Result<void> create_kernels();
     Result<void> fill_solid_angles();
+    Result<void> record_depth(gpu::Commands& commands, std::span<const ImageF> depths);
     Result<Slot> make_slot(const Choice& choice);
     ObserverState fresh_state() const;
     template <class Part> void record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input);
@@ -109,6 +116,8 @@ private:
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;
     gpu::Buffer scene_, tiles_, solid_angle_, geometry_, statistics_, state_;
     gpu::Buffer upload_, statistics_readback_, state_readback_;
+    gpu::Buffer dioptre_, depth_upload_;  // made when first wanted
+    bool has_depth_ = false;              // depth_written() in this frame
     std::vector<gpu::Buffer> downloads_;
     gpu::Kernel ingest_, tiles_kernel_, statistics_kernel_;
     std::vector<Slot> slots_;

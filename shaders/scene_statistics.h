@@ -21,6 +21,9 @@ const float pixel_cleaned = 2.0f;   // visible, and held NaN, infinity, a negati
 const float max_scene_cd_m2 = 1e8f;
 // Luminance floor of everything that takes a logarithm or divides, cd/m².
 const float min_scene_cd_m2 = 1e-6f;
+// Nearest that anything is taken to be, 1/m: 5 cm. Distances are kept as 1 over metres, 0 is infinitely far.
+const float max_dioptre = 20.0f;
+const float unknown_dioptre = -1.0f;
 
 struct TileStatistics {
     float sum_y_sr;       // sum over visible pixels of luminance times solid angle, cd/m² sr
