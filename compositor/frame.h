@@ -2,6 +2,8 @@
 // predict, warp, perceive, lens, panel and present; these are also the labels of its times and the names of its dumps.
 #pragma once
 
+#include "compositor/depth_pass.h"
+#include "compositor/layer_views.h"
 #include "compositor/passes.h"
 #include "interfaces/headset.h"
 #include "interfaces/layers.h"
@@ -108,7 +110,8 @@ private:
 
     Result<void> allocate();
     Result<void> ensure_stages();
-    std::string collect(const FrameDescription& frame, const ImageUse& images);
+    std::string collect(const FrameDescription& frame, const ImageUse& images, bool with_depth);
+    Result<void> collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour);
     void transfer_images(bool acquire);
     Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, bool fused, CpuTimes& times);
     Result<void> record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times);
@@ -127,6 +130,7 @@ private:
     FusedPass fused_;
     std::unique_ptr<perception::Stage> stage_;
     std::optional<WarpPass> warp_;
+    std::optional<DepthPass> depth_;  // made when a model first wants depth
     std::optional<LensPass> lens_;
     std::optional<SeenThroughLensPass> seen_;
     Download warp_download_, perceive_download_, lens_download_, panel_download_, seen_download_;

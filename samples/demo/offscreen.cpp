@@ -64,14 +64,14 @@ void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& lig
         images.push_back(create_image(gpu, {.format = OfficeRenderer::format,
                                             .extent = options.size,
                                             .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-        renderer.add_eye(options.size, {images.back().image.get()});
+        renderer.add_eye(options.size, {images.back().image.get()}, {});
     }
     const float unit = pre_exposure(renderer.brightest(light));
     renderer.set_light(light, unit);
     std::vector<double> times_ms;
     for (std::uint64_t frame = 0; frame < std::max<std::uint64_t>(options.frames, 1); ++frame) {
         const auto start = std::chrono::steady_clock::now();
-        for (int eye = 0; eye < 2; ++eye) { renderer.draw(static_cast<std::uint32_t>(eye), 0, eye_view(options, eye)); }
+        for (int eye = 0; eye < 2; ++eye) { renderer.draw(static_cast<std::uint32_t>(eye), 0, 0, eye_view(options, eye)); }
         renderer.wait();
         times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
