@@ -218,6 +218,21 @@ TEST(Depth, IsNotComputedUnlessAModelAsks) {
     EXPECT_FALSE(static_cast<bool>(screen.path->stage()->depth()));
 }
 
+TEST(Depth, LinesOfSightMeetWhereTheyMeet) {
+    Observer observer;
+    const auto eyes = flat_eyes();
+    const std::array<Pose, 2> places{eyes[0].head_from_eye, eyes[1].head_from_eye};
+    for (const glm::vec3 at : {glm::vec3(0, 0, -1), glm::vec3(0.3f, 0.1f, -0.5f), glm::vec3(-2, 1, -8)}) {
+        for (std::size_t eye = 0; eye < 2; ++eye)
+            observer.eyes[eye].gaze_direction = glm::normalize(at - places[eye].position), observer.eyes[eye].gaze_provenance = Provenance::measured;
+        EXPECT_NEAR(vergence_dioptre(observer, places), -1 / at.z, 1e-4);
+    }
+    std::swap(observer.eyes[0].gaze_direction, observer.eyes[1].gaze_direction);
+    EXPECT_EQ(vergence_dioptre(observer, places), 0) << "beyond infinity";
+    observer.eyes[1].gaze_provenance = Provenance::modelled;
+    EXPECT_LT(vergence_dioptre(observer, places), 0);
+}
+
 TEST(Depth, BlursWhatTheEyesDoNotLookAt) {
     Screen& screen = shared_screen();
     const Texture stripes = make_texture(test_device(), screen.pool, size, size, [](int x, int) {

@@ -40,6 +40,9 @@ struct FrameDescription {
 // composition before, 0 for none: FrameInput::snap after more than 2 s.
 void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs display_time, TimeNs last_display_time);
 
+// Where both lines of sight meet, 1/m in front of the eyes; 0 where they do not; negative unless both eyes' gaze was measured.
+float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye);
+
 struct FramePathOptions {
     PictureSize panel;     // of one eye, pixels
     double eye_scale = 1;  // size of the eye image over the panel's, 0.05..2

@@ -173,7 +173,7 @@ int run_offscreen(const Options& options) {
     const auto gpu = Gpu::standalone("Entoptic demo");
     Demo demo(options, make_control(options));
     if (options.light == "cycle" || !options.script.empty()) { demo.control().update({options.at_seconds, 0}, {}); }
-    demo.load(*gpu, false);
+    demo.load(*gpu, true);
     render_offscreen(*gpu, demo.renderer(), demo.control().light(), options.offscreen);
     return static_cast<int>(ExitCode::done);
 }
