@@ -149,7 +149,7 @@ GlareSetup ClosedForm::setup() {
     const bool differ = !(person() == wearer()), photographic = params_.photographic > 0.5f;
     GlareSetup setup;
     setup.kernels = {own, wearers};
-    if (differ) setup.kernels.push_back(own + wearers * glm::dvec3(-1));
+    if (differ) setup.kernels.push_back(own);
     setup.terms = observer_terms(photographic, params_.rescatter, 1, differ ? std::optional(2u) : std::nullopt);
     if (params_.emission_spectra > 0.5f && !photographic) use_emission_spectra(setup, straylight(person(), white, waves));
     setup.texel_px = params_.texel_px;
