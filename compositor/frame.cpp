@@ -13,7 +13,7 @@ namespace {
 constexpr double longest_step_s = 2;  // of adaptation; a longer gap is a new beginning
 constexpr float dither_amplitude = 0.98f;
 
-VkImageMemoryBarrier ownership_transfer(VkImage image, std::uint32_t family, bool acquire) {
+VkImageMemoryBarrier ownership_transfer(VkImage image, VkImageAspectFlags aspects, std::uint32_t family, bool acquire) {
     VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
     barrier.srcAccessMask = 0;
     barrier.dstAccessMask = acquire ? VK_ACCESS_SHADER_READ_BIT : 0;
@@ -21,7 +21,7 @@ VkImageMemoryBarrier ownership_transfer(VkImage image, std::uint32_t family, boo
     barrier.srcQueueFamilyIndex = acquire ? VK_QUEUE_FAMILY_EXTERNAL : family;
     barrier.dstQueueFamilyIndex = acquire ? family : VK_QUEUE_FAMILY_EXTERNAL;
     barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    barrier.subresourceRange = {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
     return barrier;
 }
 
@@ -44,6 +44,17 @@ void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs displ
         frame.head_from_eye[eye] = headset.eyes[eye].head_from_eye;
         input.eyes[eye] = {frame.head_from_eye[eye].inverse().rotate(state.gaze_direction), state.pupil_diameter_mm, state.eyelid_open};
     }
+    input.vergence_dioptre = vergence_dioptre(frame.observer, frame.head_from_eye);
+}
+
+float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye) {
+    const auto& [left, right] = observer.eyes;
+    const float apart_m = head_from_eye[1].position.x - head_from_eye[0].position.x;
+    if (left.gaze_provenance != Provenance::measured || right.gaze_provenance != Provenance::measured || !(apart_m > 0)) return -1;
+    const auto tangent = [](const glm::vec3& gaze) { return gaze.x / -gaze.z; };
+    const float dioptre = (tangent(left.gaze_direction) - tangent(right.gaze_direction)) / apart_m;
+    if (!(left.gaze_direction.z < 0 && right.gaze_direction.z < 0)) return -1;
+    return std::clamp(dioptre, 0.0f, max_dioptre);
 }
 
 // Wall-clock times of the CPU's part of each stage.
@@ -123,8 +134,9 @@ Result<void> FramePath::select(const perception::Selection& selection) {
     return selection.choices.empty() ? Result<void>{} : ensure_stages();
 }
 
-std::string FramePath::collect(const FrameDescription& frame, const ImageUse& images) {
+std::string FramePath::collect(const FrameDescription& frame, const ImageUse& images, bool with_depth) {
     layers_.clear();
+    if (depth_) depth_->clear();
     std::string problem;
     for (int eye = 0; eye < eye_count; ++eye) {
         const EyePlace place{frame.world_from_head, frame.head_from_eye[std::size_t(eye)]};
@@ -136,17 +148,38 @@ std::string FramePath::collect(const FrameDescription& frame, const ImageUse& im
                 problem = image.error().message;
                 continue;
             }
-            if (const auto view = layer_view(layer, eye, place, panel_geometry_[std::size_t(eye)], image->is_float))
-                layers_.add(eye, *view, *image);
+            const auto view = layer_view(layer, eye, place, panel_geometry_[std::size_t(eye)], image->is_float);
+            if (!view) continue;
+            layers_.add(eye, *view, *image);
+            if (!with_depth) continue;
+            if (const auto added = collect_depth(layer, eye, place, images, *image); !added) problem = added.error().message;
         }
     }
     layers_.upload();
     return problem;
 }
 
+Result<void> FramePath::collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour) {
+    auto depth = depth_layer(layer, eye, place, panel_geometry_[std::size_t(eye)]);
+    if (!depth) return {};
+    if ((depth->flags & depth_sampled) == 0) {
+        depth_->add(eye, *depth, colour, nullptr);
+        return {};
+    }
+    const auto image = images.find_depth(layer.views[std::size_t(eye)].depth.image);
+    if (!image) depth->flags &= ~(depth_known | depth_sampled);
+    depth_->add(eye, *depth, colour, image ? &*image : nullptr);
+    return image ? Result<void>{} : Result<void>(forward_error(image.error()));
+}
+
 void FramePath::transfer_images(bool acquire) {
     std::vector<VkImageMemoryBarrier> barriers;
-    for (VkImage image : layers_.images()) barriers.push_back(ownership_transfer(image, device_.queue_family(), acquire));
+    const auto transfer = [&](VkImage image, VkImageAspectFlags aspects) {
+        barriers.push_back(ownership_transfer(image, aspects, device_.queue_family(), acquire));
+    };
+    for (VkImage image : layers_.images()) transfer(image, VK_IMAGE_ASPECT_COLOR_BIT);
+    if (depth_)
+        for (const SampledImage& image : depth_->images()) transfer(image.image, image.aspects);
     if (barriers.empty()) return;
     const VkPipelineStageFlags outside = acquire ? VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT : VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
     const VkPipelineStageFlags ours = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
@@ -168,12 +201,17 @@ bool FramePath::is_ordinary() const { return stage_ && stage_->obeys_residual_la
 Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const ImageUse& images, const WantedPictures& wanted) {
     CpuTimes times(options_.stopwatch);
     FrameOutcome outcome;
-    outcome.problem = collect(frame, images);
+    const bool simulates = !options_.selection.choices.empty();
+    if (simulates || !options_.fuse || wanted.needs_stages()) ENTOPTIC_CHECK(ensure_stages());
+    const bool with_depth = simulates && stage_->wants_depth();
+    if (with_depth && !depth_) {
+        ENTOPTIC_TRY(depth, DepthPass::create(device_, eye_geometry_));
+        depth_ = std::move(depth);
+    }
+    outcome.problem = collect(frame, images, with_depth);
     times.stage_ended("collect");
-    if (!options_.selection.choices.empty()) ENTOPTIC_CHECK(ensure_stages());
-    outcome.ordinary = is_ordinary();
-    outcome.fused = options_.fuse && (options_.selection.choices.empty() || outcome.ordinary) && !wanted.needs_stages();
-    if (!outcome.fused) ENTOPTIC_CHECK(ensure_stages());
+    outcome.ordinary = simulates && is_ordinary();
+    outcome.fused = options_.fuse && (!simulates || outcome.ordinary) && !wanted.needs_stages();
     ENTOPTIC_CHECK(commands_.begin());
     if (auto recorded = record(frame, wanted, outcome, times); !recorded) {
         vkEndCommandBuffer(commands_.handle());  // so that the next frame can begin
@@ -237,6 +275,7 @@ Result<void> FramePath::record_fused(const FrameDescription& frame, bool ordinar
 Result<void> FramePath::record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times) {
     commands_.begin_stage("warp");
     ENTOPTIC_TRY(scene, warp_->record(commands_, layers_, *stage_));
+    if (depth_ && stage_->wants_depth()) depth_->record(commands_, *stage_);
     commands_.end_stage();
     commands_.barrier();
     if (wanted.warp) {

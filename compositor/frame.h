@@ -2,6 +2,8 @@
 // predict, warp, perceive, lens, panel and present; these are also the labels of its times and the names of its dumps.
 #pragma once
 
+#include "compositor/depth_pass.h"
+#include "compositor/layer_views.h"
 #include "compositor/passes.h"
 #include "interfaces/headset.h"
 #include "interfaces/layers.h"
@@ -37,6 +39,9 @@ struct FrameDescription {
 // The predict stage: where head and eyes will be at `display_time`, asked of the headset at `now`. `last_display_time` is the time of the
 // composition before, 0 for none: FrameInput::snap after more than 2 s.
 void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs display_time, TimeNs last_display_time);
+
+// Where both lines of sight meet, 1/m in front of the eyes; 0 where they do not; negative unless both eyes' gaze was measured.
+float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye);
 
 struct FramePathOptions {
     PictureSize panel;     // of one eye, pixels
@@ -109,7 +114,8 @@ private:
 
     Result<void> allocate();
     Result<void> ensure_stages();
-    std::string collect(const FrameDescription& frame, const ImageUse& images);
+    std::string collect(const FrameDescription& frame, const ImageUse& images, bool with_depth);
+    Result<void> collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour);
     void transfer_images(bool acquire);
     Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, const FrameOutcome& path, CpuTimes& times);
     Result<void> record_fused(const FrameDescription& frame, bool ordinary, CpuTimes& times);
@@ -132,6 +138,7 @@ private:
     std::unique_ptr<perception::Stage> stage_;
     std::optional<WarpPass> warp_;
     std::optional<GlancePass> glance_;
+    std::optional<DepthPass> depth_;  // made when a model first wants depth
     std::optional<LensPass> lens_;
     std::optional<SeenThroughLensPass> seen_;
     Download warp_download_, perceive_download_, lens_download_, panel_download_, seen_download_;

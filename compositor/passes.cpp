@@ -194,13 +194,14 @@ void LayerTable::append_images(int eye, std::vector<gpu::Binding>& bindings) con
 }
 
 LayerKernels::LayerKernels(gpu::Device& device, std::string name, std::span<const std::uint32_t> spirv, std::uint32_t push_bytes,
-                           bool achromatic, std::vector<std::uint32_t> more_constants)
+                           bool achromatic, std::vector<std::uint32_t> more_constants, std::size_t more_buffers)
     : device_(&device),
       name_(std::move(name)),
       spirv_(spirv),
       push_bytes_(push_bytes),
       achromatic_(achromatic),
-      more_constants_(std::move(more_constants)) {}
+      more_constants_(std::move(more_constants)),
+      more_buffers_(more_buffers) {}
 
 Result<const gpu::Kernel*> LayerKernels::get(std::uint32_t layers, bool clean_values) {
     const std::uint32_t slots = *std::lower_bound(slot_counts.begin(), slot_counts.end(), std::min(layers, layer_slots));
@@ -211,6 +212,7 @@ Result<const gpu::Kernel*> LayerKernels::get(std::uint32_t layers, bool clean_va
     info.spirv = spirv_;
     info.bindings = buffers(2, 3);
     info.bindings.insert(info.bindings.end(), layer_slots, BindingKind::sampled_image);
+    info.bindings.insert(info.bindings.end(), more_buffers_, BindingKind::storage_buffer);
     info.push_constant_bytes = push_bytes_;
     info.specialization = {slots, clean_values, achromatic_};
     info.specialization.insert(info.specialization.end(), more_constants_.begin(), more_constants_.end());
@@ -248,7 +250,7 @@ Result<GlancePass> GlancePass::create(gpu::Device& device, const std::array<EyeG
     GlancePass pass;
     ENTOPTIC_TRY(grids, EyeGrids::create(device, geometry, tile_width, tile_height, "glance"));
     pass.grids_ = std::move(grids);
-    pass.kernels_ = LayerKernels(device, "glance", glance_comp_spv, sizeof(TilePush), false, {});
+    pass.kernels_ = LayerKernels(device, "glance", glance_comp_spv, sizeof(TilePush), false, {}, 1);
     return pass;
 }
 
@@ -258,6 +260,7 @@ Result<void> GlancePass::record(gpu::Commands& commands, const LayerTable& layer
         ENTOPTIC_TRY(kernel, kernels_.get(layers.count(eye), layers.has_float()));
         std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), grids_.shown(eye).list, stage.tiles(), stage.solid_angle()};
         layers.append_images(eye, bindings);
+        bindings.emplace_back(stage.scene());
         commands.dispatch(*kernel, bindings, bytes_of(TilePush{std::uint32_t(eye), tiles}), {gpu::groups_for(tiles, 64), 1, 1});
     }
     return {};

@@ -84,8 +84,9 @@ private:
 class LayerKernels {
 public:
     LayerKernels() = default;
+    // `more_buffers`: storage buffers after the images.
     LayerKernels(gpu::Device& device, std::string name, std::span<const std::uint32_t> spirv, std::uint32_t push_bytes, bool achromatic,
-                 std::vector<std::uint32_t> more_constants);
+                 std::vector<std::uint32_t> more_constants, std::size_t more_buffers = 0);
     Result<const gpu::Kernel*> get(std::uint32_t layers, bool clean_values);
 
 private:
@@ -95,6 +96,7 @@ private:
     std::uint32_t push_bytes_ = 0;
     bool achromatic_ = false;
     std::vector<std::uint32_t> more_constants_;
+    std::size_t more_buffers_ = 0;
     std::map<std::pair<std::uint32_t, bool>, gpu::Kernel> kernels_;
 };
 
@@ -115,7 +117,7 @@ private:
 class GlancePass {
 public:
     static Result<GlancePass> create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& geometry);
-    // Writes stage.tiles(), on the grid of `geometry`, which the stage was made with too.
+    // Writes stage.tiles(), and the glanced points of stage.scene(), on the grid of `geometry`, which the stage was made with too.
     Result<void> record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage);
 
 private:

@@ -87,11 +87,11 @@ ImageD local_mean_reference(const ImageD& image, const EyeGeometry& g, double di
     for (int y0 = 0; y0 < image.height; ++y0)
         for (int x0 = 0; x0 < image.width; ++x0) {
             const glm::dvec3 here = direction[index(x0, y0)];
-            // Half a pixel's step on each axis tells how many pixels 4 sigma are.
+            // Half a pixel's step on each axis tells how many pixels 5 sigma are.
             const auto reach = [&](double dx, double dy) {
                 const glm::dvec2 px(x0 + 0.5, y0 + 0.5);
                 const double step = glm::length(geometry::geometry_direction(g, px + glm::dvec2(dx, dy)) - here);
-                return static_cast<int>(std::ceil(std::min(2.2 * sigma / std::max(step, 1e-9), 4096.0)));
+                return static_cast<int>(std::ceil(std::min(2.7 * sigma / std::max(step, 1e-9), 4096.0)));
             };
             const int across = reach(0.5, 0), down = reach(0, 0.5);
             double sum = 0, weights = 0;
@@ -99,7 +99,7 @@ ImageD local_mean_reference(const ImageD& image, const EyeGeometry& g, double di
                 for (int x = std::max(x0 - across, 0); x <= std::min(x0 + across, image.width - 1); ++x) {
                     const glm::dvec3 apart = direction[index(x, y)] - here;
                     const double angle2 = glm::dot(apart, apart);
-                    if (angle2 > 16 * sigma * sigma) continue;
+                    if (angle2 > 25 * sigma * sigma) continue;
                     const double w = sr[index(x, y)] * std::exp(-0.5 * angle2 / (sigma * sigma));
                     sum += w * light[index(x, y)];
                     weights += w;

@@ -25,7 +25,7 @@ private:
     gpu::Kernel sum_cells_, sum_rows_, sum_columns_;
 };
 
-// The same by the definition, in double: at each pixel the mean over all pixels within 4 sigma of the window, by the angle between their
+// The same by the definition, in double: at each pixel the mean over all pixels within 5 sigma of the window, by the angle between their
 // directions and by solid angle. Slow.
 ImageD local_mean_reference(const ImageD& image, const EyeGeometry& geometry, double diameter_deg);
 

@@ -16,9 +16,9 @@ FN real node_sigma(real diameter_deg, real ppd, uint cell) {
     return sqrt(max(s * s - LIT(0.25), LIT(0.1225)));
 }
 
-// Nodes on each side that count: 4 sigma, so that a lamp leaves the window where it no longer matters; at most max_node_radius.
-const int max_node_radius = 48;
-FN int node_radius(real sigma) { return min(int(ceil(LIT(4.0) * sigma)), max_node_radius); }
+// Nodes on each side that count: 5 sigma, so that a lamp leaves the window where it no longer matters; at most max_node_radius.
+const int max_node_radius = 64;
+FN int node_radius(real sigma) { return min(int(ceil(LIT(5.0) * sigma)), max_node_radius); }
 
 // Where a pixel lies between nodes: index of the node above and left, and the part of the way to the next ones.
 struct NodePlace {

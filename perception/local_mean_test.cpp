@@ -65,8 +65,8 @@ TEST(LocalMean, IsTheMeanByItsDefinition) {
         EyeGeometry geometry;
         float diameter_deg;
     };
-    for (const Case& c : {Case{"13.9 ppd", rectilinear(160, 120, 11.5), 2}, Case{"60 ppd", rectilinear(300, 180, 5), 2}, Case{"104 deg", rectilinear(301, 177, 104), 4},
-                          Case{"headset's lens", vive_lens(360, 400), 3}}) {
+    for (const Case& c : {Case{"13.9 ppd", rectilinear(120, 90, 8.6), 2}, Case{"30 ppd", rectilinear(120, 80, 4), 2}, Case{"104 deg", rectilinear(201, 117, 104), 5},
+                          Case{"headset's lens", vive_lens(180, 200), 4}}) {
         const int width = static_cast<int>(c.geometry.width), height = static_cast<int>(c.geometry.height);
         const ImageF picture = textured(width, height, 0.1, 20);
         const ImageD gpu = means(picture, c.geometry, c.diameter_deg), truth = local_mean_reference(convert<double>(picture), c.geometry, static_cast<double>(c.diameter_deg));

@@ -46,7 +46,7 @@ struct FrameInput {
     std::vector<EyeInput> eyes; // one a view
     std::uint64_t index = 0;    // counts frames; seeds noise
     bool within_display = false;   // known without looking: all light of this frame lies within the display's range (ordinary 8-bit layers)
-    bool tiles_only = false;       // the scene was not written in this frame, only the statistics of its tiles
+    bool glanced = false;          // of the scene only the points of glance_point() were written in this frame; the tiles' statistics are theirs
     float vergence_dioptre = -1;    // 1/m: where both lines of sight meet; negative: nobody has measured it
 };
 
@@ -105,6 +105,21 @@ class PlansTone {
 public:
     virtual ~PlansTone() = default;
     virtual Result<void> plan(StageIo& io) = 0;
+};
+
+// What the stage knows of a view from the frame before; zeroes before the first.
+struct SceneFeedback {
+    double scene_cd_m2 = 0;      // mean luminance of the scene
+    double displayed_cd_m2 = 0;  // mean luminance that the panel showed of it
+    double area_deg2 = 0;        // of the view
+};
+
+// A model that changes what is known of the eyes before the other models hear of it; it records no GPU work.
+class AdjustsEyes {
+public:
+    virtual ~AdjustsEyes() = default;
+    // `feedback` of each view. Leaves finite values within the ranges of EyeInput.
+    virtual void adjust(FrameInput& input, std::span<const SceneFeedback> feedback) = 0;
 };
 
 // A model that acts late on states driven by the light on the retina: recorded just before the tone models, when the picture is that

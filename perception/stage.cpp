@@ -222,15 +222,44 @@ void Stage::record_part(Slot& slot, const char* suffix, Result<void> (Part::*par
     log::error("The model {} is switched off: {}", slot.choice.entry->name, slot.failed);
 }
 
-void Stage::record(gpu::Commands& commands, const FrameInput& input) {
-    assert(input.eyes.size() == views_);
+// The mean that the panel showed: of the histogram's tiles through the tone curve, so that a lamp counts as much as the panel can show of it.
+SceneFeedback Stage::feedback(std::uint32_t view) const {
+    const SceneStatistics& s = statistics_readback_.as<SceneStatistics>()[view];
+    const ToneCurve& tone = state_readback_.as<ObserverState>()[view].tone;
+    SceneFeedback f{static_cast<double>(s.mean_y), 0, static_cast<double>(s.sum_sr) * 3282.80635};
+    double tiles = 0;
+    for (uint b = 0; b < histogram_bins; ++b) {
+        const double log10_y = 14 * (b + 0.5) / histogram_bins - 6;
+        const auto i = std::min(static_cast<std::size_t>((log10_y + 6) * tone_points_per_decade), static_cast<std::size_t>(tone_points - 1));
+        f.displayed_cd_m2 += s.histogram[b] * std::pow(10.0, static_cast<double>(tone.log10_displayed[i]));
+        tiles += s.histogram[b];
+    }
+    f.displayed_cd_m2 /= std::max(tiles, 1.0);
+    // As far as the panel shows the scene as it is, both means are the same number, whatever the histogram's bins.
+    if (tone.exposure == 1.0f && s.max_y <= tone.straight_until_cd_m2) f.displayed_cd_m2 = f.scene_cd_m2;
+    return f;
+}
+
+FrameInput Stage::adjusted(const FrameInput& input) {
+    FrameInput out = input;
+    std::vector<SceneFeedback> known;
+    for (std::uint32_t view = 0; view < views_; ++view) known.push_back(feedback(view));
+    for (Slot& slot : slots_)
+        if (auto* model = dynamic_cast<AdjustsEyes*>(slot.model.get()); model && slot.failed.empty()) model->adjust(out, known);
+    return out;
+}
+
+void Stage::record(gpu::Commands& commands, const FrameInput& measured) {
+    assert(measured.eyes.size() == views_);
+    input_ = adjusted(measured);
+    const FrameInput& input = input_;
     commands.begin_stage("statistics");
     commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
     commands.barrier();
     record_view_statistics(commands);
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
-    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), is("adaptation"));
+    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), [&](const Slot& slot) { return is("pupil")(slot) || is("adaptation")(slot); });
     // Where scene light ends: without a tone model, before the first model that acts on what it observed.
     const auto tone = std::find_if(slots_.begin(), slots_.end(),
                                    [&](const Slot& slot) { return is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get()); });
@@ -253,13 +282,14 @@ bool Stage::at_rest() const {
 
 void Stage::record_at_rest(gpu::Commands& commands, const FrameInput& input) {
     assert(input.eyes.size() == views_);
-    FrameInput inside = input;
-    inside.within_display = inside.tiles_only = true;
+    input_ = adjusted(input);
+    input_.within_display = input_.glanced = true;
+    const FrameInput& inside = input_;
     commands.begin_stage("statistics");
     record_view_statistics(commands);
     commands.end_stage();
     for (Slot& slot : slots_) {
-        const bool adapts = slot.choice.entry->slot == "adaptation";
+        const bool adapts = slot.choice.entry->slot == "adaptation" || slot.choice.entry->slot == "pupil";
         slot.recorded = false;
         slot.resting = !adapts && slot.model && slot.failed.empty() && !slot.model->is_identity();
         if (adapts) record_part(slot, "", &Model::record, commands, inside);

@@ -71,14 +71,16 @@ public:
     bool obeys_residual_law() const;
     // none of them changed the picture recorded last: no state of the eye shows. True before the first frame.
     bool at_rest() const;
-    // For a frame that needs no picture from the stage: both of the above, and all its light within the display's range. tiles() must have been
-    // written earlier in the batch; adaptation and the tone curve go on, the models are not recorded.
+    // For a frame that needs no picture from the stage: both of the above, and all its light within the display's range. tiles() and the
+    // points of glance_point() must have been written earlier in the batch; adaptation and the tone curve go on, the models are not recorded.
     void record_at_rest(gpu::Commands& commands, const FrameInput& input);
     const gpu::Buffer& tiles() const { return tiles_; }
     // Records the copy of one view of the image to host memory; read it with downloaded() after the batch was waited for.
     Result<void> record_download(gpu::Commands& commands, std::uint32_t view);
     ImageF downloaded(std::uint32_t view) const;   // RGB
 
+    // The observer of the frame recorded last, as the models were told.
+    const FrameInput& input() const { return input_; }
     // Of the frame recorded last; valid after its batch was waited for.
     std::vector<EffectOutcome> effects() const;
     ViewOutcome view(std::uint32_t index) const;
@@ -99,6 +101,9 @@ private:
         std::string failed;
         bool recorded = false, resting = false;
     };
+    // The observer as the AdjustsEyes models leave it.
+    FrameInput adjusted(const FrameInput& input);
+    SceneFeedback feedback(std::uint32_t view) const;
     void record_view_statistics(gpu::Commands& commands);
     void record_readbacks(gpu::Commands& commands);
     explicit Stage(gpu::Device& device) : device_(device) {}
@@ -113,6 +118,7 @@ private:
     gpu::Device& device_;
     ModelContext context_{device_, {}, {}, 1};
     Selection selection_;
+    FrameInput input_;
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;
     gpu::Buffer scene_, tiles_, solid_angle_, geometry_, statistics_, state_;
     gpu::Buffer upload_, statistics_readback_, state_readback_;

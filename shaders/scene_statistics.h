@@ -34,6 +34,10 @@ struct TileStatistics {
     uint visible;         // pixels that the lens shows
 };
 
+// Points of a tile that a glance looks at when the whole scene need not be drawn: columns by rows, in the middles of as many equal parts.
+const uint glance_columns = 8;
+const uint glance_rows = 2;
+
 const uint histogram_bins = 64;     // of log10 luminance of tile means, from -6 to 8
 
 // Of one view (eye).

@@ -195,7 +195,7 @@ private:
         input.index = frames_++;
         input.eyes = {eye_at(time_s, mean)};
         last_eye_ = input.eyes[0];
-        return simulator_->frame(scene_.rgb, input, want_picture);
+        return simulator_->frame(scene_.rgb, scene_.depth, input, want_picture);
     }
     Result<void> run_still() {
         ENTOPTIC_CHECK(frame(0, 0, first_mean_, plan_.times[0] == 0));

@@ -50,6 +50,32 @@ TEST_F(Simulate, PresetOffClipsTheSceneToThePanel) {
     EXPECT_EQ(read_exr(path("out.exr"))->white_luminance, 1.0f);
 }
 
+TEST_F(Simulate, EyesFocusOnTheDistanceInChannelZ) {
+    ImageF scene(96, 32, 3, 2.0f), depth(96, 32, 1, 0.3f);   // left half near, right half far; stripes of two pixels
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 96; ++x) {
+            if (x >= 48) depth.at(x, y, 0) = 20;
+            for (int c = 0; c < 3 && x % 4 < 2; ++c) scene.at(x, y, c) = 100;
+        }
+    const std::string in = picture("a.exr", scene, 1.0f, depth);
+    const auto contrast = [&](const std::string& gaze, int from, const std::vector<std::string>& more) {
+        std::vector<std::string> call{"simulate", in, "-o", path("out.exr"), "--fov", "7", "--preset", "off", "--model", "dof=dioptric_disc", "--gaze", gaze, "--pupil", "5"};
+        call.insert(call.end(), more.begin(), more.end());
+        const auto outcome = entoptic(call);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const ImageF out = result("out.exr");
+        float low = 1e9f, high = 0;
+        for (int x = from; x < from + 12; ++x) low = std::min(low, out.at(x, 16, 1)), high = std::max(high, out.at(x, 16, 1));
+        return (high - low) / (high + low);
+    };
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, std::vector<std::string>{"--reference"}}) {
+        EXPECT_GT(contrast("-2,0", 18, more), 0.9f);
+        EXPECT_LT(contrast("-2,0", 66, more), 0.3f);
+        EXPECT_GT(contrast("2,0", 66, more), 0.9f);
+        EXPECT_LT(contrast("2,0", 18, more), 0.3f);
+    }
+}
+
 TEST_F(Simulate, PngIsWhatTheDisplayShows) {
     const auto outcome = entoptic({"simulate", picture("a.exr", even(3, 2, 130)), "-o", path("out.png"), "--fov", "10", "--preset", "off"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;

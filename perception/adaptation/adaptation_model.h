@@ -37,7 +37,7 @@ public:
             const EyeInput& eye = io.input.eyes[view];
             const vec3 gaze(gaze::gaze_in_view(views_[view], glm::dvec3(eye.gaze_direction)));
             const Push push{params_, gaze, dt_s, view, io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, !(eye.eyelid_open >= lid_counts_as_closed),
-                            gaze_of_(params_).retinal > 0.5f, !io.input.tiles_only};
+                            gaze_of_(params_).retinal > 0.5f, io.input.glanced};
             if (memory_)
                 io.commands.dispatch(kernel_, {io.tiles, io.geometry, io.statistics, io.state, io.scene, io.solid_angle, memory_}, push, {1, 1, 1});
             else
@@ -51,7 +51,7 @@ private:
         Params params;
         vec3 gaze;
         float dt_s;
-        uint view, tiles_x, tiles_y, snap, lid_closed, veil, pixels_known;
+        uint view, tiles_x, tiles_y, snap, lid_closed, veil, glanced;
     };
     static constexpr float lid_counts_as_closed = 0.5f;
 

@@ -3,7 +3,7 @@
 // settled(target): the state after a long time, and stepped(state, target): the state push.dt_s later.
 #include "perception/adaptation/gaze_luminance.glsl"
 #include "perception/observer_state.h"
-#include "shaders/colour_math.glsl"
+#include "shaders/tile_statistics.glsl"
 
 float settled(float target);
 float stepped(float state, float target);
@@ -25,7 +25,7 @@ layout(scalar, push_constant) uniform Push {
     uint snap;              // 1: the state becomes the target
     uint lid_closed;        // 1: the state holds
     uint veil;              // 1: the straylight of the whole field counts
-    uint pixels_known;      // 1: the scene was written in this frame, 0: only its tiles
+    uint glanced;           // 1: of the scene only the points of glance_point() are there
 } push;
 
 shared GazeSums parts[256];
@@ -40,10 +40,11 @@ GazeSums whole_tile(EyeGeometry g, uint x, uint y, bool gaze_known) {
     return tile_sums(tile, weight, scatter_at(tile_angle(g, push.gaze, x, y)), clip_cd_m2);
 }
 
-// One pixel, as a tile of its own. `kept`: what the clipping of outliers leaves of its tile's light.
-GazeSums pixel_sums(EyeGeometry g, uvec2 pixel, float kept) {
+// One pixel, as a tile of its own. `kept`: what the clipping of outliers leaves of its tile's light;
+// `pixels`: for how many it stands.
+GazeSums pixel_sums(EyeGeometry g, uvec2 pixel, float kept, float pixels) {
     const uint at = (push.view * g.height + pixel.y) * g.width + pixel.x;
-    const float sr = solid_angle[at], y = kept * luminance(scene[at].rgb);
+    const float sr = pixels * solid_angle[at], y = kept * luminance(scene[at].rgb);
     const TileStatistics alone = TileStatistics(y * sr, sr, y, y, y, 0u, sr > 0.0 ? 1u : 0u);
     const float angle = angle_between(geometry_direction(g, vec2(pixel) + 0.5), push.gaze);
     return tile_sums(alone, gaussian(gaze_of(push.params), angle), scatter_at(angle), 1e30);
@@ -53,9 +54,12 @@ GazeSums pixels_of_tile(EyeGeometry g, uint x, uint y) {
     GazeSums sum = no_tiles();
     const TileStatistics tile = tiles[(push.view * push.tiles_y + y) * push.tiles_x + x];
     const float kept = min(1.0, clip_cd_m2 * tile.sum_sr / max(tile.sum_y_sr, 1e-30));
-    const uvec2 low = uvec2(x * tile_width, y * tile_height), high = min(low + uvec2(tile_width, tile_height), uvec2(g.width, g.height));
-    for (uint row = low.y; row < high.y; ++row)
-        for (uint column = low.x; column < high.x; ++column) sum = added(sum, pixel_sums(g, uvec2(column, row), kept));
+    const uvec2 low = uvec2(x * tile_width, y * tile_height), extent = min(uvec2(tile_width, tile_height), uvec2(g.width, g.height) - low);
+    const uint pixels = extent.x * extent.y, points = push.glanced == 1u ? glance_columns * glance_rows : pixels;
+    for (uint i = 0u; i < points; ++i) {
+        const uvec2 point = push.glanced == 1u ? glance_point(extent, i) : uvec2(i % extent.x, i / extent.x);
+        sum = added(sum, pixel_sums(g, low + point, kept, float(pixels) / float(points)));
+    }
     return sum;
 }
 
@@ -69,7 +73,7 @@ void main() {
     GazeSums sum = no_tiles();
     for (uint t = i; t < tile_count; t += 256u) {
         const uint x = t % push.tiles_x, y = t / push.tiles_x;
-        sum = added(sum, push.pixels_known == 1u && gaze_known && tile_is_coarse(gaze_of(push.params), g, push.gaze, x, y)
+        sum = added(sum, gaze_known && tile_is_coarse(gaze_of(push.params), g, push.gaze, x, y)
                              ? pixels_of_tile(g, x, y)
                              : whole_tile(g, x, y, gaze_known));
     }

@@ -5,6 +5,7 @@
 
 #include "perception/afterimage/jacobs_apply.comp.h"
 #include "perception/afterimage/jacobs_gate.comp.h"
+#include "perception/afterimage/jacobs_mark.comp.h"
 #include "perception/afterimage/jacobs_observe.comp.h"
 #include "perception/afterimage/jacobs_plan.comp.h"
 
@@ -42,7 +43,7 @@ struct PlanPush {
     float white_cd_m2;
 };
 struct GatePush {
-    uint groups, snap;
+    uint tiles_x, tiles_y, snap;
     float dt_s;
 };
 
@@ -96,6 +97,11 @@ public:
         ENTOPTIC_CHECK(model->make_kernels());
         ENTOPTIC_TRY(status, gpu::Buffer::create(context.device, sizeof(RetinaStatus), gpu::BufferKind::device, "retina status"));
         model->status_ = std::move(status);
+        const EyeGeometry& g = context.views[0];
+        const std::size_t tiles = std::size_t(gpu::groups_for(g.width, tile_width)) * gpu::groups_for(g.height, tile_height);
+        ENTOPTIC_TRY(flags, gpu::Buffer::create(context.device, tiles * context.views.size() * sizeof(uint), gpu::BufferKind::device,
+                                                "afterimage tiles"));
+        model->flags_ = std::move(flags);
         return model;
     }
     void set_parameters(std::span<const float> values) override { std::memcpy(&params_, values.data(), sizeof(params_)); }
@@ -118,18 +124,22 @@ public:
                                           offset_of(dispatch_observe));
         }
         io.commands.barrier();
-        io.commands.dispatch(gate_, {status_, io.gate}, GatePush{gpu::groups_for(io.width * io.height, 256), io.input.snap ? 1u : 0u, dt_s},
-                             {1, 1, 1});
+        io.commands.dispatch(gate_, {status_, io.gate}, GatePush{io.tiles_x, io.tiles_y, io.input.snap ? 1u : 0u, dt_s}, {1, 1, 1});
         front_ = 1 - front_;
         fresh_ = false;
         return {};
     }
     Result<void> record(StageIo& io) override {
         for (uint view = 0; view < io.views; ++view)
-            io.commands.dispatch_indirect(
-                apply_, {io.scene, io.geometry, seen_},
-                ApplyPush{map_, gaze_of(io.input.eyes[view]), view, io.display.white_cd_m2, io.display.black_cd_m2}, io.gate,
-                offset_of(dispatch_apply));
+            io.commands.dispatch_indirect(mark_, {io.geometry, seen_, flags_},
+                                          MarkPush{map_, gaze_of(io.input.eyes[view]), view, io.tiles_x, io.tiles_y}, io.gate,
+                                          offset_of(dispatch_mark));
+        io.commands.barrier();
+        for (uint view = 0; view < io.views; ++view)
+            io.commands.dispatch_indirect(apply_, {io.scene, io.geometry, seen_, flags_},
+                                          ApplyPush{map_, gaze_of(io.input.eyes[view]), view, io.tiles_x, io.tiles_y,
+                                                    io.display.white_cd_m2, io.display.black_cd_m2},
+                                          io.gate, offset_of(dispatch_apply));
         return {};
     }
 
@@ -145,7 +155,8 @@ private:
         ENTOPTIC_CHECK(make(plan_, "afterimage.jacobs.plan", jacobs_plan_comp_spv, 4, sizeof(PlanPush)));
         ENTOPTIC_CHECK(make(observe_, "afterimage.jacobs.observe", jacobs_observe_comp_spv, 7, sizeof(ObservePush)));
         ENTOPTIC_CHECK(make(gate_, "afterimage.jacobs.gate", jacobs_gate_comp_spv, 2, sizeof(GatePush)));
-        return make(apply_, "afterimage.jacobs", jacobs_apply_comp_spv, 3, sizeof(ApplyPush));
+        ENTOPTIC_CHECK(make(mark_, "afterimage.jacobs.mark", jacobs_mark_comp_spv, 3, sizeof(MarkPush)));
+        return make(apply_, "afterimage.jacobs", jacobs_apply_comp_spv, 4, sizeof(ApplyPush));
     }
     // Buffers of the size that the parameters ask for. A new map starts fresh.
     Result<void> fit_map(gpu::Commands& commands) {
@@ -168,10 +179,11 @@ private:
 
     gpu::Device* device_ = nullptr;
     std::vector<EyeGeometry> views_;
-    gpu::Kernel plan_, observe_, gate_, apply_;
+    gpu::Kernel plan_, observe_, gate_, mark_, apply_;
     gpu::Buffer states_[2];   // Cell a cell, views: of the frame before, and of this one
     gpu::Buffer seen_;        // Afterimage a cell, views
     gpu::Buffer status_;      // RetinaStatus
+    gpu::Buffer flags_;       // a tile, views: 1 where anything is seen
     std::size_t front_ = 0;
     bool fresh_ = true;
     RetinaMap map_{};

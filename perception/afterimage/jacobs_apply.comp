@@ -8,11 +8,13 @@
 #include "perception/afterimage/jacobs_math.glsl"
 #include "shaders/geometry.glsl"
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 32, local_size_y = 8) in;   // a tile
 
 layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer Geometry { EyeGeometry geometry[]; };
 layout(scalar, binding = 2) readonly buffer Seen { Afterimage seen[]; };
+
+layout(scalar, binding = 3) readonly buffer Flags { uint flags[]; };
 
 layout(scalar, push_constant) uniform PushBlock { ApplyPush push; };
 
@@ -28,12 +30,13 @@ Afterimage seen_at(vec2 at) {
 }
 
 void main() {
+    if (flags[(push.view * push.tiles_y + gl_WorkGroupID.y) * push.tiles_x + gl_WorkGroupID.x] == 0u) return;
     const EyeGeometry g = geometry[push.view];
-    const uint i = gl_GlobalInvocationID.x, pixels = g.width * g.height;
-    if (i >= pixels) return;
-    const uint index = push.view * pixels + i;
+    const uvec2 id = gl_GlobalInvocationID.xy;
+    if (id.x >= g.width || id.y >= g.height) return;
+    const uint index = (push.view * g.height + id.y) * g.width + id.x;
     const vec4 pixel = scene[index];
-    const vec2 at = retina_of_direction(push.gaze, geometry_direction(g, vec2(i % g.width, i / g.width) + 0.5));
+    const vec2 at = retina_of_direction(push.gaze, geometry_direction(g, vec2(id) + 0.5));
     if (!(pixel.w > 0.0) || !(length(at) < push.map.reach)) return;
     scene[index] = vec4(with_afterimage(pixel.rgb, seen_at(at), push.black_cd_m2, push.white_cd_m2), pixel.w);
 }

@@ -14,7 +14,7 @@ layout(scalar, binding = 0) buffer Status { RetinaStatus status; };
 layout(scalar, binding = 1) buffer GateBuffer { Gate gate; };
 
 layout(scalar, push_constant) uniform Push {
-    uint groups;            // that cover the pixels of one view
+    uint tiles_x, tiles_y;
     uint snap;
     float dt_s;
 } push;
@@ -25,7 +25,8 @@ void main() {
     const float codes =
         bound_codes(uintBitsToFloat(status.added_bits), uintBitsToFloat(status.common_bits), uintBitsToFloat(status.spread_bits));
     const GateDecision d = gate_decision(codes, half_a_code, gate.ran == 1u, gate.quiet_s, gate.fade, push.dt_s, push.snap == 1u);
-    gate.dispatch[dispatch_apply] = GateDispatch(d.run ? push.groups : 0u, 1u, 1u);
+    gate.dispatch[dispatch_mark] = GateDispatch(d.run ? (push.tiles_x * push.tiles_y + 63u) / 64u : 0u, 1u, 1u);
+    gate.dispatch[dispatch_apply] = GateDispatch(d.run ? push.tiles_x : 0u, push.tiles_y, 1u);
     gate.ran = d.run ? 1u : 0u;
     gate.reason = d.run ? 0u : 1u;
     gate.bound = d.run ? 0.0 : codes;

@@ -3,13 +3,14 @@
 #define ENTOPTIC_PERCEPTION_AFTERIMAGE_JACOBS_GPU_H
 
 #include "perception/afterimage/jacobs_params.h"
+#include "shaders/shared_types.h"
 
 #ifdef __cplusplus
 namespace entoptic::perception {
 #endif
 
 const uint observe_width = 32, observe_height = 4;     // a workgroup of cells
-const uint dispatch_observe = 0, dispatch_apply = 1;   // of Gate::dispatch
+const uint dispatch_observe = 0, dispatch_mark = 1, dispatch_apply = 2;   // of Gate::dispatch
 const uint most_samples = 8;                           // pixels of a cell, an axis
 
 // Where the states of the frame before come from.
@@ -43,10 +44,16 @@ struct ObservePush {
     float white_cd_m2;
 };
 
+struct MarkPush {
+    RetinaMap map;
+    vec3 gaze;
+    uint view, tiles_x, tiles_y;
+};
+
 struct ApplyPush {
     RetinaMap map;
     vec3 gaze;
-    uint view;
+    uint view, tiles_x, tiles_y;
     float white_cd_m2, black_cd_m2;
 };
 

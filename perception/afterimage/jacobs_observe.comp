@@ -21,16 +21,26 @@ layout(scalar, binding = 6) buffer Status { RetinaStatus status; };
 
 layout(scalar, push_constant) uniform PushBlock { ObservePush push; };
 
+// Of the tone curve, read once.
+float exposure, straight_end;
+
 // Displayed over scene light for luminance y. Curves rise: beyond the straight part they show at least what its end shows, where the table
 // alone, between an entry below the end and one above, would show up to 3 % less.
 float display_scale(float y) {
-    const float exposure = state[push.view].tone.exposure, end = state[push.view].tone.straight_until_cd_m2;
-    if (y <= end * rounded_up) return exposure;
-    return max(ENTOPTIC_DISPLAYED_LUMINANCE(state[push.view].tone, y), exposure * end) / max(y, min_scene_cd_m2);
+    if (y <= straight_end * rounded_up) return exposure;
+    return max(ENTOPTIC_DISPLAYED_LUMINANCE(state[push.view].tone, y), exposure * straight_end) / max(y, min_scene_cd_m2);
+}
+
+// Under the residual law: light that the panel shows, and no darker than it is, drives nothing. Most pixels end here.
+bool is_shown(vec3 light, float y) {
+    return push.params.photographic < 0.5 && exposure >= 1.0 && y <= straight_end * rounded_up &&
+           max(light.r, max(light.g, light.b)) * exposure <= push.white_cd_m2 * rounded_up;
 }
 
 Drive drive_of_light(vec3 light, vec3 lid) {
-    return drive_of(push.params, light, display_scale(luminance(light)), state[push.view].tone.exposure, push.white_cd_m2, lid);
+    const float y = luminance(light);
+    if (is_shown(light, y)) return no_drive();
+    return drive_of(push.params, light, display_scale(y), exposure, push.white_cd_m2, lid);
 }
 
 // Beyond the picture the scene is taken to go on with the luminance that the eye is adapted to; under the residual law nothing is missing.
@@ -95,6 +105,8 @@ void main() {
     const uvec2 id = gl_GlobalInvocationID.xy;
     if (id.x >= push.map.size || id.y >= push.map.size) return;
     const uint index = (push.view * push.map.size + id.y) * push.map.size + id.x;
+    exposure = state[push.view].tone.exposure;
+    straight_end = state[push.view].tone.straight_until_cd_m2;
     const vec2 at = (vec2(id) + 0.5 - 0.5 * float(push.map.size)) * push.map.cell_rad;
     const vec3 lid = lid_transmission(push.params, push.lid_open);
     const Drive drive = length(at) < push.map.reach ? drive_at(at, lid) : unseen_drive(lid);
