@@ -137,6 +137,7 @@ Result<bool> CurveRequest::set(std::string_view name, std::span<const double> va
         for (std::size_t i = 0; i < values.size(); ++i) ENTOPTIC_CHECK(set_parameter(name, whole ? alias.parameters[i] : name, values[i]));
         return true;
     }
+    if (contains(curve_.without, name)) return false;
     for (const Curve& other : curves())
         if (other.kind == curve_.kind && takes(other, name)) return false;
     return usage_error(fmt::format("There is no setting '{}'. {}", name, all_settings()));
