@@ -3,7 +3,7 @@
 #ifndef ENTOPTIC_PERCEPTION_GLARE_FFT512_GLSL
 #define ENTOPTIC_PERCEPTION_GLARE_FFT512_GLSL
 
-#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/glare_gpu.h"
 
 // One more place after every 8, so that strides of 8 fall into different banks.
 shared vec2 fft_exchange[fft_lines][glare_n + glare_n / 8];

@@ -1,6 +1,6 @@
 #include "perception/glare/glare_grid.h"
 
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_math.glsl"
 #include "shaders/geometry.glsl"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ GlarePatch patch_towards(uint view, glm::dvec3 forward) {
 }
 
 glm::dvec2 angles_in(const GlarePatch& patch, glm::dvec3 direction) {
-    return luidolt_spectral::grid_offset(patch.right, patch.up, patch.forward, 1.0, direction);
+    return glare::grid_offset(patch.right, patch.up, patch.forward, 1.0, direction);
 }
 
 // What a view looks like, from samples of its visible pixels.
@@ -142,8 +142,8 @@ struct PendingEntry {
 
 void add_splat(const NodeTap& tap, uint node, std::vector<PendingEntry>& pending) {
     const auto x = static_cast<uint>(tap.u + 0.5f), y = static_cast<uint>(tap.v + 0.5f);
-    const glm::dvec3 across = luidolt_spectral::spline_weights(static_cast<double>(tap.u) - x);
-    const glm::dvec3 down = luidolt_spectral::spline_weights(static_cast<double>(tap.v) - y);
+    const glm::dvec3 across = glare::spline_weights(static_cast<double>(tap.u) - x);
+    const glm::dvec3 down = glare::spline_weights(static_cast<double>(tap.v) - y);
     for (uint k = 0; k < 9; ++k) {
         const double w = across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * static_cast<double>(tap.weight);
         if (w > 0) pending.push_back({(tap.patch_index * glare_n + y + k / 3 - 1) * glare_n + x + k % 3 - 1, {node, static_cast<float>(w)}});

@@ -6,7 +6,7 @@
 // centroid are kept, and a uniform field stays uniform to rounding.
 #pragma once
 
-#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/glare_gpu.h"
 #include "shaders/eye_geometry.h"
 
 #include <glm/glm.hpp>

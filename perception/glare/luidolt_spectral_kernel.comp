@@ -5,7 +5,7 @@
 // The far kernel of one pupil diameter on the glare grid, per sr, averaged over each texel: aperture and particle halo, all wavelengths,
 // less the near field. Grid 0: red + i green, grid 1: blue.
 #include "perception/glare/luidolt_spectral_gpu.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_math.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -14,7 +14,7 @@ layout(scalar, binding = 1) readonly buffer Halo { vec3 halo_table[]; };
 layout(scalar, binding = 2) readonly buffer Structure { float structure[]; };
 layout(scalar, binding = 3) writeonly buffer Grid { vec2 grid[]; };
 
-layout(scalar, push_constant) uniform PushBlock { KernelPush push; };
+layout(scalar, push_constant) uniform PushBlock { TexturedKernelPush push; };
 
 // Bins of the transform beyond which its texture fades into the smooth halo: from 1/3 to 0.4 of the sampling frequency.
 const float fade_from = 170.0, fade_to = 205.0;

@@ -1,7 +1,9 @@
 #include "perception/glare/luidolt_spectral_pupil.h"
 
 #include "base/noise.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_engine.h"
+#include "perception/glare/glare_math.glsl"
+#include "perception/glare/glare_spectrum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,50 +15,34 @@ constexpr double pi = 3.14159265358979323846;
 
 bool as_printed(const LuidoltSpectralParams& params) { return params.as_printed > 0.5f; }
 
-// Eq. 10 as printed has its end points at 380 and 770 nm, where the eye sees nothing: k + 1 samples, two of them wasted.
-// Midpoints of 400..700 nm do better with fewer (trap L9).
-std::vector<double> sample_wavelengths(const LuidoltSpectralParams& params, int k) {
-    std::vector<double> nm;
-    if (as_printed(params))
-        for (int i = 0; i <= k; ++i) nm.push_back(380 + (770.0 - 380.0) * i / k);
-    else
-        for (int i = 0; i < k; ++i) nm.push_back(400 + 300 * (i + 0.5) / k);
-    return nm;
-}
 int wavelength_count(const LuidoltSpectralParams& params) { return std::clamp(static_cast<int>(std::lround(params.wavelengths)), 3, 32); }
 
-struct Spectrum {
-    std::vector<double> nm;
-    std::vector<glm::dvec3> weight;      // of each wavelength in R, G, B
-    glm::dvec3 gain{0};                  // sum of the weights
-};
-
-Spectrum sample_spectrum(const LuidoltSpectralParams& params, int k) {
-    Spectrum spectrum{sample_wavelengths(params, k), {}, {}};
-    for (const double lambda : spectrum.nm) {
-        glm::dvec3 colour = luidolt_spectral::rgb_of_xyz(luidolt_spectral::wyman_xyz(lambda));
-        // Eq. 9 as printed lacks (lambda0/lambda)^2, so that long waves get too much energy (trap L7).
-        if (as_printed(params)) colour *= std::pow(lambda / (1000 * glare_lambda0_um), 2);
-        spectrum.weight.push_back(colour);
-        spectrum.gain += colour;
+// Eq. 10 as printed has its end points at 380 and 770 nm, where the eye sees nothing: k + 1 samples, two of them wasted (trap L9).
+// Eq. 9 as printed lacks (lambda0/lambda)^2, so that long waves get too much energy (trap L7); only the mean of the channels sums to 1, and
+// the picture takes on the kernel's colour.
+GlareSpectrum printed_spectrum(int k) {
+    GlareSpectrum spectrum;
+    for (int i = 0; i <= k; ++i) {
+        const double nm = 380 + (770.0 - 380.0) * i / k;
+        spectrum.nm.push_back(nm);
+        spectrum.weight.push_back(glare::rgb_of_xyz(glare::wyman_xyz(nm)) * std::pow(nm / (1000 * glare_lambda0_um), 2));
+        spectrum.gain += spectrum.weight.back();
     }
-    // Each channel sums to 1; as printed, only their mean does, and the picture takes on the kernel's colour.
-    const glm::dvec3 sum = spectrum.gain, norm = as_printed(params) ? glm::dvec3((sum.x + sum.y + sum.z) / 3) : sum;
+    const double norm = (spectrum.gain.x + spectrum.gain.y + spectrum.gain.z) / 3;
     for (glm::dvec3& weight : spectrum.weight) weight /= norm;
-    spectrum.gain = sum / norm;
+    spectrum.gain /= norm;
     return spectrum;
 }
 
-// For what is tabulated, more wavelengths cost nothing per frame, and with 8 the outer rings would stand apart.
-constexpr int table_wavelengths = 96;
-Spectrum table_spectrum(const LuidoltSpectralParams& params) {
-    return sample_spectrum(params, as_printed(params) ? wavelength_count(params) : table_wavelengths);
+GlareSpectrum table_spectrum(const LuidoltSpectralParams& params) {
+    return as_printed(params) ? printed_spectrum(wavelength_count(params)) : midpoint_spectrum(table_wavelengths);
 }
 
 }  // namespace
 
 SpectralTable make_spectrum(const LuidoltSpectralParams& params) {
-    const Spectrum few = sample_spectrum(params, wavelength_count(params)), many = table_spectrum(params);
+    const int k = wavelength_count(params);
+    const GlareSpectrum few = as_printed(params) ? printed_spectrum(k) : midpoint_spectrum(k), many = table_spectrum(params);
     SpectralTable table{};
     table.count = static_cast<uint>(few.nm.size());
     for (std::size_t i = 0; i < few.nm.size(); ++i) {
@@ -71,13 +57,13 @@ SpectralTable make_spectrum(const LuidoltSpectralParams& params) {
 }
 
 std::vector<vec3> make_halo_table(const LuidoltSpectralParams& params) {
-    const Spectrum spectrum = table_spectrum(params);
+    const GlareSpectrum spectrum = table_spectrum(params);
     std::vector<vec3> table(halo_table_size);
     for (uint i = 0; i < halo_table_size; ++i) {
         const double sine = static_cast<double>(i) / (halo_table_size - 1);
         glm::dvec3 sum{0};
         for (std::size_t k = 0; k < spectrum.nm.size(); ++k)
-            sum += spectrum.weight[k] * luidolt_spectral::disc_scatter(static_cast<double>(params.particle_diameter_um), spectrum.nm[k] / 1000, sine);
+            sum += spectrum.weight[k] * glare::disc_scatter(static_cast<double>(params.particle_diameter_um), spectrum.nm[k] / 1000, sine);
         table[i] = sum;
     }
     return table;

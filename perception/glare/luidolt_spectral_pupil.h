@@ -14,9 +14,6 @@ namespace entoptic::perception {
 constexpr double glare_lambda0_um = 0.575;
 // Width of a patch of the pupil: its transform has bins of 0.0722 degrees at 575 nm, one pixel of a Vive Pro (facts 3.4.4).
 constexpr double glare_patch_um = 456.3;
-// Particles are the same in all of the largest pupil, 9 mm.
-constexpr double largest_pupil_mm = 9;
-
 SpectralTable make_spectrum(const LuidoltSpectralParams& params);
 
 // Halo of the particles, over the whole spectrum, per sr and of energy 1, at sin(theta) = i / (halo_table_size - 1).

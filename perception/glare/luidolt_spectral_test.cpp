@@ -1,15 +1,15 @@
 // labels: gpu
 #include "perception/glare/glare_grid.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_math.glsl"
 #include "perception/glare/luidolt_spectral_pupil.h"
 #include "perception/testing/harness.h"
 #include "perception/testing/oracles.h"
 #include "perception/testing/scenes.h"
 #include "shaders/geometry.glsl"
 
-#include "perception/glare/luidolt_spectral_columns.comp.h"
+#include "perception/glare/glare_columns.comp.h"
+#include "perception/glare/glare_rows.comp.h"
 #include "perception/glare/luidolt_spectral_particles.comp.h"
-#include "perception/glare/luidolt_spectral_rows.comp.h"
 #include "perception/glare/luidolt_spectral_structure.comp.h"
 
 #include <complex>
@@ -139,7 +139,7 @@ TEST(Glare, TransformIsThatOfFftw) {
             expected[y * glare_n + x] = {v.x, v.y};
             energy_in += std::norm(expected[y * glare_n + x]);
         }
-    const Shader rows("rows", luidolt_spectral_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", luidolt_spectral_columns_comp_spv, 4, sizeof(FftPush), {0});
+    const Shader rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0});
     const gpu::Buffer grid = buffer_of(data), twiddle = buffer_of(twiddles()), unused = buffer_of(std::vector<float>(64));
     const FftPush push{0, glare_n, 3, 0, 0, 0, 0};
     run_on_gpu([&](gpu::Commands& c) {
@@ -169,7 +169,7 @@ TEST(Glare, TransformIsThatOfFftw) {
 TEST(Glare, AiryPatternIsThatOfTheTable) {
     double worst = 0;
     for (const OracleRow& row : oracle("airy"))
-        worst = std::max(worst, std::abs(luidolt_spectral::airy(row.at("x_piDsin_over_lambda")) - row.at("relative_intensity")));
+        worst = std::max(worst, std::abs(glare::airy(row.at("x_piDsin_over_lambda")) - row.at("relative_intensity")));
     ledger(name, "airy", "double against oracle max", worst);
     EXPECT_LT(worst, 1e-6);
     for (const OracleRow& row : oracle("airy")) {
@@ -190,15 +190,15 @@ TEST(Glare, RingsStandAtThePublishedAngles) {
         if (line.rfind("particle_um", 0) != 0) continue;
         double diameter = 0, nm = 0, zero1 = 0, ring1 = 0;
         ASSERT_EQ(std::sscanf(line.c_str(), "particle_um,%lf,%lf,%lf,%lf", &diameter, &nm, &zero1, &ring1), 4);
-        const auto scatter = [&](double deg) { return luidolt_spectral::disc_scatter(diameter, nm / 1000, std::sin(deg * degree)); };
+        const auto scatter = [&](double deg) { return glare::disc_scatter(diameter, nm / 1000, std::sin(deg * degree)); };
         EXPECT_LT(scatter(zero1), 1e-6 * scatter(0)) << line;
         EXPECT_NEAR(scatter(ring1) / scatter(0), 0.0174978628, 1e-4) << line;
         ++compared;
     }
     EXPECT_GT(compared, 20);
     // The dark ring of the paper's 6 um particles at 575 nm, and the same at twice the wavelength.
-    EXPECT_LT(luidolt_spectral::disc_scatter(6, 0.575, std::sin(6.713 * degree)), 1e-5 * luidolt_spectral::disc_scatter(6, 0.575, 0));
-    EXPECT_NEAR(luidolt_spectral::disc_scatter(6, 1.15, 2 * 0.05) / luidolt_spectral::disc_scatter(6, 0.575, 0.05), 0.25, 1e-9);
+    EXPECT_LT(glare::disc_scatter(6, 0.575, std::sin(6.713 * degree)), 1e-5 * glare::disc_scatter(6, 0.575, 0));
+    EXPECT_NEAR(glare::disc_scatter(6, 1.15, 2 * 0.05) / glare::disc_scatter(6, 0.575, 0.05), 0.25, 1e-9);
 }
 
 TEST(Glare, CoveredShareIsThatOfTheTable) {
@@ -255,7 +255,7 @@ TEST(Glare, ClosedFormIsThatOfTheTable) {
         const auto i = static_cast<std::size_t>(place);
         for (int c = 0; c < 3; ++c) {
             const double scattered = glm::mix(static_cast<double>(halo[i][c]), static_cast<double>(halo[i + 1][c]), place - static_cast<double>(i));
-            const double k = f * scattered + (1 - f) * luidolt_spectral::aperture_tail(row.at("pupil_mm") * 1000, 1, sine) * static_cast<double>(spectrum.mean_lambda_um[c]);
+            const double k = f * scattered + (1 - f) * glare::aperture_tail(row.at("pupil_mm") * 1000, 1, sine) * static_cast<double>(spectrum.mean_lambda_um[c]);
             // Of the brightest channel: the table sums 380..770 nm, which matters in the dark of blue's rings.
             worst = std::max(worst, std::abs(k - expected[c]) / std::max({expected[0], expected[1], expected[2]}));
         }
@@ -272,7 +272,7 @@ TEST(Glare, StructureFactorIsTheSumOverTheParticles) {
     ASSERT_EQ(field.pairs, 2u);
     const Shader particles("particles", luidolt_spectral_particles_comp_spv, 4, sizeof(StructurePush)),
         structure("structure", luidolt_spectral_structure_comp_spv, 3, sizeof(StructurePush)),
-        rows("rows", luidolt_spectral_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", luidolt_spectral_columns_comp_spv, 4, sizeof(FftPush), {0});
+        rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0});
     const gpu::Buffer cells = buffer_of(field.cell_offsets), list = buffer_of(field.particles), mean = buffer_of(field.mean), twiddle = buffer_of(twiddles()),
                       grid = buffer_of(std::vector<vec2>(2 * glare_plane)), result = buffer_of(std::vector<float>(2 * structure_n * structure_n)),
                       unused = buffer_of(std::vector<float>(64));
@@ -563,14 +563,14 @@ public:
         // Both built kernels, mixed as the GPU mixes them.
         const double step = static_cast<double>(p.rebuild_mm), first = std::floor(pupil_mm / step) * step;
         const double blend = (pupil_mm - first) / step;
-        pupil_mm_ = pupil_mm;
+        near_kernel_ = [this, first, step, blend](double theta) { return glm::mix(value(theta, first), value(theta, first + step), blend); };
         for (int c = 0; c < 3; ++c) {
             const Plane a = kernel(c, first), b = kernel(c, first + step);
             kernels_[c].resize(a.size());
             for (std::size_t i = 0; i < a.size(); ++i) kernels_[c][i] = (1 - blend) * a[i] + blend * b[i];
             fftw(kernels_[c], FFTW_FORWARD);
             for (uint i = 0; i < glare_n * glare_n; ++i)
-                kernels_[c][i] *= luidolt_spectral::sharpening((i % glare_n) / 512.0, grid_.damping) * luidolt_spectral::sharpening((i / glare_n) / 512.0, grid_.damping);
+                kernels_[c][i] *= glare::sharpening((i % glare_n) / 512.0, grid_.damping) * glare::sharpening((i / glare_n) / 512.0, grid_.damping);
         }
     }
 
@@ -594,8 +594,8 @@ private:
         const double sine = std::sin(std::min(theta, pi / 2)), place = sine * (halo_table_size - 1), f = covered_share(p_, pupil_mm);
         const auto i = std::min<std::size_t>(static_cast<std::size_t>(place), halo_table_size - 2);
         const glm::dvec3 halo = glm::mix(glm::dvec3(halo_[i]), glm::dvec3(halo_[i + 1]), place - static_cast<double>(i));
-        const glm::dvec3 tail = (1 - f) * luidolt_spectral::aperture_tail(pupil_mm * 1000, 1, sine) * glm::dvec3(spectrum_.mean_lambda_um);
-        return glm::max(f * halo + tail, glm::dvec3(0)) * luidolt_spectral::radius_share(theta, static_cast<double>(p_.radius_deg) * degree) *
+        const glm::dvec3 tail = (1 - f) * glare::aperture_tail(pupil_mm * 1000, 1, sine) * glm::dvec3(spectrum_.mean_lambda_um);
+        return glm::max(f * halo + tail, glm::dvec3(0)) * glare::radius_share(theta, static_cast<double>(p_.radius_deg) * degree) *
                static_cast<double>(p_.strength);
     }
     double near() const { return std::max(std::floor(static_cast<double>(p_.near_px)) * grid_.pixel_rad, 0.5 * grid_.pitch); }
@@ -608,7 +608,7 @@ private:
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {
                         const double theta = std::hypot(x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5) * grid_.pitch;
-                        sum += value(theta, pupil_mm)[c] * (1 - luidolt_spectral::near_share(theta, near()));
+                        sum += value(theta, pupil_mm)[c] * (1 - glare::near_share(theta, near()));
                     }
                 plane[static_cast<std::size_t>(((y + 512) % 512) * 512 + (x + 512) % 512)] = sum / (n * n);
             }
@@ -619,7 +619,7 @@ private:
         const int step = static_cast<int>(grid_.step);
         for (int j = y / step - 1; j <= y / step + 4; ++j)
             for (int i = x / step - 1; i <= x / step + 4; ++i) {
-                const double w = luidolt_spectral::spline(static_cast<double>(x) / step - (i - 1)) * luidolt_spectral::spline(static_cast<double>(y) / step - (j - 1));
+                const double w = glare::spline(static_cast<double>(x) / step - (i - 1)) * glare::spline(static_cast<double>(y) / step - (j - 1));
                 if (w > 0 && i >= 0 && j >= 0) f(static_cast<std::size_t>(j) * grid_.nodes_x + static_cast<std::size_t>(i), w);
             }
     }
@@ -641,7 +641,7 @@ private:
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             const NodeTap& tap = grid_.node_taps[n];
             const auto x = static_cast<uint>(tap.u + 0.5f), y = static_cast<uint>(tap.v + 0.5f);
-            const glm::dvec3 across = luidolt_spectral::spline_weights(static_cast<double>(tap.u) - x), down = luidolt_spectral::spline_weights(static_cast<double>(tap.v) - y);
+            const glm::dvec3 across = glare::spline_weights(static_cast<double>(tap.u) - x), down = glare::spline_weights(static_cast<double>(tap.v) - y);
             nodes[n] = 0;
             for (uint k = 0; k < 9; ++k)
                 nodes[n] += across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * plane[(y + k / 3 - 1) * glare_n + x + k % 3 - 1].real();
@@ -666,7 +666,7 @@ private:
                         for (int j = 0; j < n && (dx || dy); ++j)
                             for (int i = 0; i < n; ++i) {
                                 const double theta = glm::length((dx + (i + 0.5) / n - 0.5) * across + (dy + (j + 0.5) / n - 0.5) * down);
-                                sum += value(theta, pupil_mm_) * luidolt_spectral::near_share(theta, near());
+                                sum += near_kernel_(theta) * glare::near_share(theta, near());
                             }
                         weights.push_back(sum * (glm::length(glm::cross(across, down)) / (n * n)));
                     }
@@ -687,7 +687,7 @@ private:
     GlareGrid grid_;
     SpectralTable spectrum_;
     std::vector<vec3> halo_;
-    double pupil_mm_ = 4;
+    std::function<glm::dvec3(double)> near_kernel_;
     Plane kernels_[3];
 };
 

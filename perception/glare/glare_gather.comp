@@ -4,10 +4,10 @@
 
 // Texels of the glare grid to nodes by splines, blended between patches where they overlap.
 //   coverage   writes the share of each node's light that the far field moves away (into its key)
-//   veil       writes what arrives and what leaves: gain and gaze window are taken in here, so that apply is out = C - leaves C + arrives
+//   veil       writes what arrives and what leaves: sign, gain and gaze window are taken in here
 layout(local_size_x = 256) in;
-#include "perception/glare/luidolt_spectral_gpu.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_math.glsl"
 #include "shaders/geometry.glsl"
 
 layout(constant_id = 0) const uint veil = 1;
@@ -15,7 +15,7 @@ layout(constant_id = 0) const uint veil = 1;
 layout(scalar, binding = 0) readonly buffer Grid { float grid[]; };                // real and imaginary parts
 layout(scalar, binding = 1) readonly buffer Taps { NodeTap taps[]; };          // node, tap
 layout(scalar, binding = 2) buffer Coverage { vec3 coverage[]; };              // key, view, node
-layout(scalar, binding = 3) writeonly buffer Exchange { vec3 exchange[]; };    // view, node: arrives, leaves
+layout(scalar, binding = 3) buffer Exchange { vec3 exchange[]; };    // view, node: arrives, leaves
 layout(scalar, binding = 4) readonly buffer Geometry { EyeGeometry geometry[]; };
 
 layout(scalar, push_constant) uniform PushBlock { GatherPush push; };
@@ -50,10 +50,12 @@ void main() {
         coverage[push.key * all + node] = sum;
         return;
     }
-    const vec3 leaves = mix(coverage[push.first_key * all + node], coverage[push.second_key * all + node], push.blend) + (1.0 - push.gain);
+    vec3 leaves = vec3(0.0);
+    if (push.leaves != 0) leaves = mix(coverage[push.first_key * all + node], coverage[push.second_key * all + node], push.blend) + (1.0 - push.gain);
     const vec2 px = (vec2(i % push.nodes_x, i / push.nodes_x) - 1.0) * float(push.step) + 0.5;
-    float window = 1.0;
-    if (push.window_sigma > 0.0) window = gaze_window(push.gaze[min(view, 1u)], geometry_direction(geometry[view], px), push.window_sigma);
-    exchange[2 * node] = window * sum;
-    exchange[2 * node + 1] = window * leaves;
+    float window = push.sign;
+    if (push.window_sigma > 0.0) window *= gaze_window(push.gaze[min(view, 1u)], geometry_direction(geometry[view], px), push.window_sigma);
+    const vec3 arrived = push.add != 0 ? exchange[2 * node] : vec3(0.0), left = push.add != 0 ? exchange[2 * node + 1] : vec3(0.0);
+    exchange[2 * node] = arrived + window * sum;
+    exchange[2 * node + 1] = left + window * leaves;
 }

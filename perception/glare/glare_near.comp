@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it, closed form,
-// without the texture that the far field has. One workgroup a tile; the kernel is made for the tile's own pixels per degree.
-#include "perception/glare/luidolt_spectral_gpu.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+// The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it, from its profile,
+// without the texture that the far field may have. One workgroup a tile; the kernel is made for the tile's own pixels per degree.
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_math.glsl"
 #include "perception/observer_state.h"
 #include "shaders/geometry.glsl"
 #include "shaders/scene_statistics.h"
@@ -17,23 +17,18 @@ layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer State { ObserverState state[]; };
 layout(scalar, binding = 2) readonly buffer NearTiles { uint near_count; uint near_list[]; };
 layout(scalar, binding = 3) readonly buffer Geometry { EyeGeometry geometry[]; };
-layout(scalar, binding = 4) readonly buffer Spectrum { SpectralTable spectrum; };
-layout(scalar, binding = 5) readonly buffer Halo { vec3 halo_table[]; };
-layout(scalar, binding = 6) writeonly buffer NearLight { vec3 near_light[]; };
+layout(scalar, binding = 4) readonly buffer Profile { RadialEntry profile[]; };
+layout(scalar, binding = 5) buffer NearLight { vec3 near_light[]; };
 
 layout(scalar, push_constant) uniform PushBlock { NearPush push; };
+
+#include "perception/glare/glare_radial.glsl"
 
 shared vec3 weights[max_side * max_side];
 shared uint lit_rows;      // a bit for each row of pixels, from max_near_px above the tile to as many below, that holds light above the threshold
 
 vec3 kernel(float theta) {
-    const float sine = sin(theta / push.angle_scale);
-    const float place = sine * float(halo_table_size - 1);
-    const uint i = min(uint(place), halo_table_size - 2);
-    const vec3 halo = push.halo * mix(halo_table[i], halo_table[i + 1], place - float(i));
-    const vec3 tail = (1.0 - push.halo) * push.diffraction * aperture_tail(push.pupil_um, 1.0, sine) * spectrum.mean_lambda_um;
-    const float share = near_share(theta, push.near) * radius_share(theta, push.radius) * push.strength / (push.angle_scale * push.angle_scale);
-    return max(tail + halo, vec3(0.0)) * share;
+    return radial_kernel(theta, push.profile, push.weights) * near_share(theta, push.near);
 }
 
 // Integral of the kernel over the pixel at (dx, dy), sr; across and down are the steps of one pixel in direction.
@@ -54,7 +49,10 @@ int column_of(int x, bool sphere) {
     return x < int(push.width) ? max(x, -1) : -1;
 }
 
-vec3 excess(vec4 pixel, float threshold) { return max(pixel.rgb - threshold, vec3(0.0)); }
+vec3 excess(vec4 pixel, float threshold) {
+    const vec3 above = max(pixel.rgb - threshold, vec3(0.0));
+    return push.turn == 0 ? above : push.turn == 1 ? above.gbr : above.brg;
+}
 
 void main() {
     const uint lane = gl_LocalInvocationIndex, per_view = push.tiles_x * push.tiles_y;
@@ -69,7 +67,7 @@ void main() {
         const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_near_px)));
         const int side = 2 * radius + 1;
         const uint base = view * push.width * push.height;
-        const float threshold = push.near_from * state[view].adaptation_cd_m2;
+        const float threshold = push.near_from < 0.0 ? state[view].tone.scene_white_cd_m2 : push.near_from * state[view].adaptation_cd_m2;
         const bool sphere = g.kind == geometry_equirect;
         // Where is light at all? A lamp fills few of the rows in reach.
         barrier();
@@ -88,7 +86,7 @@ void main() {
         const bool inside = px.x < push.width && px.y < push.height;
         const uint at = base + px.y * push.width + px.x;
         if (lit == 0u) {
-            if (inside) near_light[at] = vec3(0.0);
+            if (inside && push.add == 0) near_light[at] = vec3(0.0);
             continue;
         }
         for (uint i = lane; i < uint(side * side); i += tile_width * tile_height) {
@@ -98,7 +96,7 @@ void main() {
         barrier();
         if (!inside) continue;
         const vec4 here = scene[at];
-        const vec3 own = excess(here, threshold);
+        const vec3 own = push.leaves != 0 ? excess(here, threshold) : vec3(0.0);
         vec3 sum = vec3(0.0);
         for (int dy = -radius; dy <= radius; ++dy) {
             const int y = int(px.y) + dy;
@@ -114,6 +112,7 @@ void main() {
             }
         }
         sum *= gaze_window(push.gaze[min(view, 1u)], geometry_direction(g, middle), push.window_sigma);
-        near_light[at] = here.w > 0.0 ? sum : vec3(0.0);
+        if (here.w <= 0.0) sum = vec3(0.0);
+        near_light[at] = push.add != 0 ? near_light[at] + sum : sum;
     }
 }

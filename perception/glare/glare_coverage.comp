@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // What the pass "pixels" makes of an image that is 1 where the geometry shows anything: the coverage of each node. Once per geometry.
-#include "perception/glare/luidolt_spectral_gpu.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_math.glsl"
 
 layout(local_size_x = 64) in;
 

@@ -4,7 +4,7 @@
 
 // Nodes to texels of the glare grid, in gather form, so that the sum has one order. Patches 2 p and 2 p + 1 become real and imaginary part of
 // grid p: the kernel is real, so one complex transform convolves both.
-#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/glare_gpu.h"
 
 layout(local_size_x = 64) in;
 

@@ -4,7 +4,7 @@
 
 // Which tiles need the near field: those with light above the threshold in them or beside them. A near radius of at most 12 pixels reaches
 // one tile to the side and two up or down. The order of the list varies from run to run; the picture does not depend on it.
-#include "perception/glare/luidolt_spectral_gpu.h"
+#include "perception/glare/glare_gpu.h"
 #include "perception/observer_state.h"
 #include "shaders/scene_statistics.h"
 
@@ -30,7 +30,7 @@ void main() {
             if (at.x < 0 || at.y < 0 || at.x >= int(push.tiles_x) || at.y >= int(push.tiles_y)) continue;
             brightest = max(brightest, tiles[view * per_view + uint(at.y) * push.tiles_x + uint(at.x)].max_channel);
         }
-    const bool near = brightest > push.near_from * state[view].adaptation_cd_m2;
+    const bool near = brightest > (push.near_from < 0.0 ? state[view].tone.scene_white_cd_m2 : push.near_from * state[view].adaptation_cd_m2);
     flags[tile] = near ? 1u : 0u;
     if (!near) return;
     const uint slot = atomicAdd(near_count, 1u);

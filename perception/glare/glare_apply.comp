@@ -2,19 +2,23 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// out = C - leaves C + arrives + near, with the first two interpolated between the nodes by splines. An invocation does the pixels of one
-// column whose nearest row of nodes is the same.
-#include "perception/glare/luidolt_spectral_gpu.h"
-#include "perception/glare/luidolt_spectral_math.glsl"
+// out = C - leaves kept + arrives + near, with leaves and arrives interpolated between the nodes by splines; `kept` is the light that
+// leaves its place when it is scattered. An invocation does the pixels of one column whose nearest row of nodes is the same.
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_math.glsl"
+#include "perception/observer_state.h"
 #include "shaders/scene_statistics.h"
 
 layout(local_size_x = 256) in;
 layout(constant_id = 0) const uint step = 4;
+layout(constant_id = 1) const uint kept = source_scene;
+layout(constant_id = 2) const uint keep_drawn = 0;      // 1: what changes in the panel's light is kept for a last convolution
 
 layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer Exchange { vec3 exchange[]; };     // node: arrives, leaves
-layout(scalar, binding = 2) readonly buffer NearLight { vec3 near_light[]; };
+layout(scalar, binding = 2) buffer NearLight { vec3 near_light[]; };           // from the pass "near"; then what is drawn
 layout(scalar, binding = 3) readonly buffer Flags { uint flags[]; };
+layout(scalar, binding = 4) readonly buffer State { ObserverState state[]; };
 
 layout(scalar, push_constant) uniform PushBlock { LatticePush push; };
 
@@ -30,16 +34,22 @@ void main() {
         arrives[j] = across.x * exchange[at] + across.y * exchange[at + 2] + across.z * exchange[at + 4];
         leaves[j] = across.x * exchange[at + 1] + across.y * exchange[at + 3] + across.z * exchange[at + 5];
     }
+    const float white = state[view].tone.scene_white_cd_m2;
     for (uint k = 0; k < step; ++k) {
         const int y = int(segment * step + k) - int(step / 2);
         if (y < 0 || y >= int(push.height)) continue;
         const vec3 down = spline_weights((float(k) - float(step / 2)) / float(step));
         const uint at = (view * push.height + uint(y)) * push.width + x;
         const vec4 pixel = scene[at];
-        vec3 light = pixel.rgb * (1.0 - (down.x * leaves[0] + down.y * leaves[1] + down.z * leaves[2])) +
-                     (down.x * arrives[0] + down.y * arrives[1] + down.z * arrives[2]);
-        if (push.near != 0 && flags[(view * push.tiles_y + uint(y) / tile_height) * push.tiles_x + x / tile_width] != 0) light += near_light[at];
+        vec3 light = pixel.rgb + (down.x * arrives[0] + down.y * arrives[1] + down.z * arrives[2]);
+        if (kept != source_excess) {
+            const vec3 from = kept == source_scene ? pixel.rgb : kept == source_displayed ? min(pixel.rgb, vec3(white)) : near_light[at];
+            light -= from * (down.x * leaves[0] + down.y * leaves[1] + down.z * leaves[2]);
+        }
+        if (kept != source_drawn && push.near != 0 && flags[(view * push.tiles_y + uint(y) / tile_height) * push.tiles_x + x / tile_width] != 0) light += near_light[at];
         // The maximum also turns NaN into 0.
-        scene[at] = pixel.w > 0.0 ? vec4(max(light, vec3(0.0)), pixel.w) : pixel;
+        light = max(light, vec3(0.0));
+        if (keep_drawn != 0) near_light[at] = pixel.w > 0.0 ? min(light, vec3(white)) - min(pixel.rgb, vec3(white)) : vec3(0.0);
+        scene[at] = pixel.w > 0.0 ? vec4(light, pixel.w) : pixel;
     }
 }

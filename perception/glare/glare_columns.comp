@@ -17,7 +17,7 @@ layout(scalar, binding = 3) buffer Spectrum { float spectrum[]; };    // key, ch
 
 #include "perception/glare/fft512.glsl"
 
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_math.glsl"
 
 layout(scalar, push_constant) uniform PushBlock { FftPush push; };
 

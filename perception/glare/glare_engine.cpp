@@ -1,0 +1,345 @@
+#include "perception/glare/glare_engine.h"
+
+#include "perception/glare/glare_math.glsl"
+#include "shaders/scene_statistics.h"
+
+#include "perception/glare/glare_apply.comp.h"
+#include "perception/glare/glare_columns.comp.h"
+#include "perception/glare/glare_coverage.comp.h"
+#include "perception/glare/glare_gate.comp.h"
+#include "perception/glare/glare_gather.comp.h"
+#include "perception/glare/glare_kernel.comp.h"
+#include "perception/glare/glare_near.comp.h"
+#include "perception/glare/glare_pixels.comp.h"
+#include "perception/glare/glare_rows.comp.h"
+#include "perception/glare/glare_splat.comp.h"
+#include "perception/glare/glare_tiles.comp.h"
+
+#include <cmath>
+
+namespace entoptic::perception {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+using enum gpu::BindingKind;
+
+std::vector<vec2> make_twiddles() {
+    std::vector<vec2> table(glare_n);
+    for (uint n = 0; n < glare_n; ++n) table[n] = glm::dvec2(std::cos(2 * pi * n / glare_n), -std::sin(2 * pi * n / glare_n));
+    return table;
+}
+
+std::size_t entry(uint i) { return offsetof(Gate, dispatch) + i * sizeof(GateDispatch); }
+
+struct Gaze {
+    vec3 of[2] = {{0, 0, -1}, {0, 0, -1}};
+    explicit Gaze(const StageIo& io) {
+        for (std::size_t i = 0; i < std::min<std::size_t>(io.input.eyes.size(), 2); ++i) of[i] = io.input.eyes[i].gaze_direction;
+    }
+};
+
+}  // namespace
+
+RadialProfile make_profile(const std::function<RadialEntry(double)>& entry_of) {
+    RadialProfile profile(radial_entries);
+    for (uint i = 0; i < radial_entries; ++i) profile[i] = entry_of(glare::radial_angle(i, static_cast<double>(radial_first), radial_entries));
+    return profile;
+}
+
+glm::dvec3 scattered_beyond(const RadialProfile& profile, glm::dvec3 weights, double from_rad) {
+    const double step = std::log(pi / static_cast<double>(radial_first)) / (radial_entries - 1);
+    glm::dvec3 sum{0};
+    for (uint i = 0; i < radial_entries; ++i) {
+        const double theta = glare::radial_angle(i, static_cast<double>(radial_first), radial_entries);
+        if (theta < from_rad) continue;
+        glm::dvec3 value{0};
+        for (uint k = 0; k < radial_parts; ++k) value += weights[static_cast<int>(k)] * glm::dvec3(profile[i].part[k]);
+        // d(omega) = 2 pi sin(theta) dtheta, dtheta = theta d(log theta).
+        sum += value * (2 * pi * std::sin(theta) * theta * step);
+    }
+    return sum;
+}
+
+Result<void> GlareModel::make_kernels() {
+    const Wanted wanted[] = {
+        {&gate_, "glare.gate", glare_gate_comp_spv, 4, sizeof(GatePush), {}},
+        {&tiles_, "glare.tiles", glare_tiles_comp_spv, 5, sizeof(TilesPush), {}},
+        {&coverage_, "glare.coverage", glare_coverage_comp_spv, 2, sizeof(LatticePush), {}},
+        {&splat_, "glare.splat", glare_splat_comp_spv, 4, sizeof(SplatPush), {}},
+        {&rows_forward_, "glare.rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}},
+        {&rows_inverse_, "glare.rows_inverse", glare_rows_comp_spv, 2, sizeof(FftPush), {1}},
+        {&columns_transform_, "glare.columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0}},
+        {&columns_convolve_, "glare.columns_convolve", glare_columns_comp_spv, 4, sizeof(FftPush), {1}},
+        {&columns_kernel_, "glare.columns_kernel", glare_columns_comp_spv, 4, sizeof(FftPush), {2}},
+        {&gather_coverage_, "glare.gather_coverage", glare_gather_comp_spv, 5, sizeof(GatherPush), {0}},
+        {&gather_veil_, "glare.gather", glare_gather_comp_spv, 5, sizeof(GatherPush), {1}},
+        {&near_, "glare.near", glare_near_comp_spv, 6, sizeof(NearPush), {}},
+        {&kernel_kernel_, "glare.kernel", glare_kernel_comp_spv, 2, sizeof(KernelPush), {}},
+    };
+    for (const Wanted& w : wanted) ENTOPTIC_CHECK(make_kernel(w));
+    return {};
+}
+
+Result<void> GlareModel::make_kernel(const Wanted& w) {
+    ENTOPTIC_TRY(kernel, gpu::Kernel::create(context_.device, {w.name, w.spirv, std::vector<gpu::BindingKind>(w.buffers, storage_buffer), w.push_bytes,
+                                                               w.specialization}));
+    *w.kernel = std::move(kernel);
+    return {};
+}
+
+Result<void> GlareModel::make_buffer(gpu::Buffer& buffer, std::size_t bytes, const char* name) {
+    ENTOPTIC_TRY(made, gpu::Buffer::create(context_.device, bytes, gpu::BufferKind::device, name));
+    buffer = std::move(made);
+    return {};
+}
+
+bool GlareModel::has(uint source) const {
+    return std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.source == source; });
+}
+
+uint GlareModel::near_source() const {
+    const auto found = std::find_if(setup_.terms.begin(), setup_.terms.end(), [](const GlareTerm& t) { return t.near; });
+    return found == setup_.terms.end() ? source_drawn : found->source;
+}
+
+float GlareModel::near_rad(uint kernel) const {
+    const bool near = near_field() && std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.near && t.kernel == kernel; });
+    // Without a near field the light of half a texel stays where it is.
+    return static_cast<float>(std::max(near ? std::floor(static_cast<double>(setup_.near_px)) * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch));
+}
+
+float GlareModel::window_sigma_rad() const { return setup_.window_sigma_deg * static_cast<float>(pi / 180); }
+
+// Everything that depends on parameters and geometry. Waits for the device, since buffers of earlier frames may go.
+Result<void> GlareModel::prepare() {
+    {
+        const std::lock_guard lock(context_.device.queue_mutex());
+        ENTOPTIC_VK(vkDeviceWaitIdle(context_.device.handle()));
+    }
+    setup_ = setup();
+    built_.assign(2 * setup_.kernels.size(), std::nullopt);
+    first_recorded_ = false;
+    if (setup_.texel_px != grid_texel_px_) {
+        grid_ = make_glare_grid(context_.views, static_cast<double>(setup_.texel_px));
+        grid_texel_px_ = setup_.texel_px;
+    }
+    ENTOPTIC_CHECK(make_picture_passes());
+    ENTOPTIC_CHECK(make_buffers());
+    ENTOPTIC_CHECK(prepare_far());
+    prepared_ = true;
+    return {};
+}
+
+// The passes over the whole picture have the lattice's step and the source compiled in.
+Result<void> GlareModel::make_picture_passes() {
+    const uint kept = has(source_scene) ? source_scene : has(source_displayed) ? source_displayed : source_excess;
+    for (const GlareTerm& term : setup_.terms)
+        ENTOPTIC_CHECK(make_kernel({&pixels_[term.source], "glare.pixels", glare_pixels_comp_spv, 5, sizeof(LatticePush), {grid_.step, term.source}}));
+    ENTOPTIC_CHECK(make_kernel({&apply_, "glare.apply", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, kept, has(source_drawn) ? 1u : 0u}}));
+    return make_kernel({&apply_drawn_, "glare.apply_drawn", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, source_drawn, 0}});
+}
+
+Result<void> GlareModel::make_buffers() {
+    ENTOPTIC_CHECK(make_static(twiddle_, make_twiddles(), "glare.twiddle"));
+    ENTOPTIC_CHECK(make_static(taps_, grid_.node_taps, "glare.taps"));
+    ENTOPTIC_CHECK(make_static(splat_offsets_, grid_.splat_offsets, "glare.splat_offsets"));
+    ENTOPTIC_CHECK(make_static(splat_entries_, grid_.splat_entries, "glare.splat_entries"));
+    RadialProfile profiles;
+    for (const RadialProfile& profile : setup_.kernels) profiles.insert(profiles.end(), profile.begin(), profile.end());
+    ENTOPTIC_CHECK(make_static(profiles_, profiles, "glare.profiles"));
+
+    const EyeGeometry& g = context_.views[0];
+    const std::size_t views = context_.views.size(), all_nodes = views * nodes(), pixels = std::size_t(g.width) * g.height * views, keys = built_.size();
+    const std::size_t tiles = std::size_t(gpu::groups_for(g.width, tile_width)) * gpu::groups_for(g.height, tile_height) * views;
+    const std::size_t complex_plane = glare_plane * sizeof(vec2);
+    const struct { gpu::Buffer* buffer; std::size_t bytes; const char* name; } wanted[] = {
+        {&work_, 3 * pairs() * complex_plane, "glare.work"},
+        {&coverage_rows_, pairs() * complex_plane, "glare.coverage_rows"},
+        {&spectra_, keys * 3 * glare_plane * sizeof(float), "glare.spectra"},
+        {&node_values_, all_nodes * sizeof(vec3), "glare.nodes"},
+        {&node_exchange_, 2 * all_nodes * sizeof(vec3), "glare.exchange"},
+        {&node_coverage_, keys * all_nodes * sizeof(vec3), "glare.node_coverage"},
+        {&near_tiles_, (tiles + 1) * sizeof(uint), "glare.near_tiles"},
+        {&flags_, tiles * sizeof(uint), "glare.near_flags"},
+        {&near_light_, near_field() || has(source_drawn) ? pixels * sizeof(vec3) : 64, "glare.near_light"},
+    };
+    for (const auto& w : wanted) ENTOPTIC_CHECK(make_buffer(*w.buffer, w.bytes, w.name));
+    return {};
+}
+
+// Copies and the coverage of the grid: once per parameter set.
+void GlareModel::record_coverage(StageIo& io) {
+    gpu::Commands& c = io.commands;
+    for (const StaticBuffer* s : {&twiddle_, &taps_, &splat_offsets_, &splat_entries_, &profiles_}) s->record_copy(c);
+    c.fill(flags_, 0);
+    c.dispatch(coverage_, {io.solid_angle, node_values_}, lattice(io), {gpu::groups_for(nodes(), 64), 1, io.views});
+    c.barrier();
+    const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 1};
+    c.dispatch(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, coverage_rows_}, splat, {glare_n / 64, grid_.rows, pairs()});
+    c.barrier();
+    c.dispatch(rows_forward_, {coverage_rows_, twiddle_.buffer}, light_rows(), {gpu::groups_for(grid_.rows, fft_lines), pairs(), 1});
+}
+
+void GlareModel::record_transform(gpu::Commands& c, uint planes) {
+    c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, planes, 1});
+    c.barrier();
+    c.dispatch(columns_transform_, {work_, work_, twiddle_.buffer, spectra_}, all_rows(), {glare_n / fft_lines, planes, 1});
+}
+
+// Kernel, spectrum and coverage of one pupil diameter, into the plane of its parity.
+void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
+    gpu::Commands& c = io.commands;
+    const uint key = key_of(kernel, steps);
+    const double pupil_mm = diameter_mm(steps);
+    c.barrier();
+    if (!record_far_kernel(io, kernel, pupil_mm)) {
+        const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(strength(kernel, pupil_mm).weights)};
+        c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, {glare_n / 64, glare_n, 1});
+    }
+    c.barrier();
+    c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, 2, 1});
+    c.barrier();
+    FftPush spectrum = all_rows();
+    spectrum.first_key = spectrum.second_key = key;
+    c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {glare_n / fft_lines, 2, 1});
+    if (std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.kernel == kernel && leaves(t); }))
+        record_node_coverage(io, key);
+    built_[key] = steps;
+}
+
+// The share of each node's light that the kernel moves away: the convolution of a picture of ones.
+void GlareModel::record_node_coverage(StageIo& io, uint key) {
+    gpu::Commands& c = io.commands;
+    FftPush convolve = light_rows();
+    convolve.input_channels = 1;
+    convolve.first_key = convolve.second_key = key;
+    c.barrier();
+    c.dispatch(columns_convolve_, {coverage_rows_, work_, twiddle_.buffer, spectra_}, convolve, {glare_n / fft_lines, 3 * pairs(), 1});
+    c.barrier();
+    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1});
+    c.barrier();
+    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, key, key, key, 0, 1, 1, 0, 0, vec3(1), {}};
+    c.dispatch(gather_coverage_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, {gpu::groups_for(nodes(), 256), 1, io.views});
+}
+
+// The kernel is a function of the pupil diameter alone, and a continuous one: no history, so nothing can flicker or differ between two runs.
+// Both pupils move together (consensual reflex): their mean.
+GlareModel::KernelChoice GlareModel::choose_kernel(const StageIo& io) const {
+    if (setup_.rebuild_mm <= 0) return {};
+    double sum = 0;
+    int valid = 0;
+    for (const EyeInput& eye : io.input.eyes)
+        if (eye.pupil_diameter_mm >= 0.5f && eye.pupil_diameter_mm <= 20) {      // false for NaN
+            sum += static_cast<double>(eye.pupil_diameter_mm);
+            ++valid;
+        }
+    const double steps = std::clamp(valid > 0 ? sum / valid : 4.0, smallest_pupil_mm, largest_pupil_mm) / static_cast<double>(setup_.rebuild_mm);
+    const double floor = std::floor(steps);
+    return {static_cast<long>(floor), static_cast<long>(floor) + 1, static_cast<float>(steps - floor)};
+}
+
+GlareStrength GlareModel::blended(uint kernel, KernelChoice choice) const {
+    const GlareStrength a = strength(kernel, diameter_mm(choice.first)), b = strength(kernel, diameter_mm(choice.second));
+    return {glm::mix(a.weights, b.weights, static_cast<double>(choice.blend)), std::max(a.scattered, b.scattered)};
+}
+
+Result<void> GlareModel::record(StageIo& io) {
+    if (!prepared_) ENTOPTIC_CHECK(prepare());
+    if (!first_recorded_) {
+        record_coverage(io);
+        record_first(io);
+    }
+    first_recorded_ = true;
+    const KernelChoice choice = choose_kernel(io);
+    for (uint kernel = 0; kernel < setup_.kernels.size(); ++kernel)
+        for (const long steps : {choice.first, choice.second})
+            if (built_[key_of(kernel, steps)] != steps) record_kernel(io, kernel, steps);
+    io.commands.barrier();
+    record_gate(io, choice);
+    bool near_before = false, before = false;
+    for (const GlareTerm& term : setup_.terms)
+        if (term.near && near_field()) {
+            record_near(io, term, choice, near_before);
+            near_before = true;
+        }
+    for (const GlareTerm& term : setup_.terms)
+        if (term.source != source_drawn) {
+            record_far(io, term, choice, before);
+            before = true;
+        }
+    record_apply(io, apply_);
+    for (const GlareTerm& term : setup_.terms)
+        if (term.source == source_drawn) {
+            io.commands.barrier();
+            record_far(io, term, choice, false);
+            record_apply(io, apply_drawn_);
+        }
+    return {};
+}
+
+void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
+    GatePush gate{};
+    for (const GlareTerm& term : setup_.terms) {
+        if (term.source == source_excess) gate.excess = 1;
+        if (term.source == source_scene || term.source == source_displayed) gate.scattered += static_cast<float>(blended(term.kernel, choice).scattered);
+    }
+    gate.views = io.views;
+    gate.always = setup_.gain == vec3(1) ? 0 : 1;
+    gate.groups[gate_tiles] = {near_field() ? gpu::groups_for(io.tiles_x * io.tiles_y * io.views, 256) : 0, 1, 1};
+    gate.groups[gate_pixels] = {gpu::groups_for(grid_.nodes_x, 256 / grid_.step - 2), gpu::groups_for(grid_.nodes_y, 8), io.views};
+    gate.groups[gate_splat] = {glare_n / 64, grid_.rows, pairs()};
+    gate.groups[gate_rows] = {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1};
+    gate.groups[gate_columns] = {glare_n / fft_lines, 3 * pairs(), 1};
+    gate.groups[gate_gather] = {gpu::groups_for(nodes(), 256), 1, io.views};
+    gate.groups[gate_near] = {0, 1, 1};
+    gate.groups[gate_apply] = {gpu::groups_for(io.width, 256), gpu::groups_for(io.height + grid_.step / 2, grid_.step), io.views};
+    io.commands.dispatch(gate_, {io.statistics, io.gate, near_tiles_, io.state}, gate, {1, 1, 1});
+    io.commands.barrier();
+    const TilesPush tiles{io.tiles_x, io.tiles_y, io.views, near_from()};
+    io.commands.dispatch_indirect(tiles_, {io.tiles, io.state, io.gate, near_tiles_, flags_}, tiles, io.gate, entry(gate_tiles));
+    io.commands.barrier();
+}
+
+void GlareModel::record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) {
+    const Gaze gaze(io);
+    const NearPush push{io.width, io.height, io.tiles_x, io.tiles_y, term.kernel * radial_entries, term.turn, leaves(term) ? 1u : 0u, add ? 1u : 0u,
+                        near_rad(term.kernel), near_from(), window_sigma_rad(), vec3(blended(term.kernel, choice).weights * static_cast<double>(term.sign)),
+                        {gaze.of[0], gaze.of[1]}};
+    if (add) io.commands.barrier();
+    io.commands.dispatch_indirect(near_, {io.scene, io.state, near_tiles_, io.geometry, profiles_.buffer, near_light_}, push, io.gate, entry(gate_near));
+}
+
+// Pixels to nodes' exchange: what arrives and what leaves.
+void GlareModel::record_far(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) {
+    gpu::Commands& c = io.commands;
+    const uint first = key_of(term.kernel, choice.first), second = key_of(term.kernel, choice.second);
+    if (add) c.barrier();
+    c.dispatch_indirect(pixels_[term.source], {io.scene, io.solid_angle, node_values_, io.state, near_light_}, lattice(io, term.turn), io.gate,
+                        entry(gate_pixels));
+    c.barrier();
+    const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 3};
+    c.dispatch_indirect(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, work_}, splat, io.gate, entry(gate_splat));
+    c.barrier();
+    c.dispatch_indirect(rows_forward_, {work_, twiddle_.buffer}, light_rows(), io.gate, entry(gate_rows));
+    c.barrier();
+    FftPush convolve = light_rows();
+    convolve.first_key = first;
+    convolve.second_key = second;
+    convolve.blend = choice.blend;
+    c.dispatch_indirect(columns_convolve_, {work_, work_, twiddle_.buffer, spectra_}, convolve, io.gate, entry(gate_columns));
+    c.barrier();
+    c.dispatch_indirect(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), io.gate, entry(gate_rows));
+    c.barrier();
+    const Gaze gaze(io);
+    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, 0, first, second, choice.blend, term.sign,
+                            leaves(term) ? 1u : 0u, add ? 1u : 0u, window_sigma_rad(), setup_.gain, {gaze.of[0], gaze.of[1]}};
+    c.dispatch_indirect(gather_veil_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, io.gate, entry(gate_gather));
+    c.barrier();
+}
+
+void GlareModel::record_apply(StageIo& io, const gpu::Kernel& apply) {
+    io.commands.dispatch_indirect(apply, {io.scene, node_exchange_, near_light_, flags_, io.state}, lattice(io), io.gate, entry(gate_apply));
+}
+
+}  // namespace entoptic::perception

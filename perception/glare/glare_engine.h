@@ -1,0 +1,168 @@
+// The engine of all glare models: convolution of a picture's light with kernels of any width, on the sphere. A model says what the kernels
+// are (GlareSetup, made when parameters change; GlareStrength, by pupil) and which light each of them scatters (GlareTerm); everything
+// per frame is done here:
+//   gate; pixels -> nodes -> texels of an equi-angular grid; transform, product, transform; texels -> nodes -> pixels; near field in space.
+// Kernels stand at multiples of rebuild_mm of the pupil's diameter, and what lies between is interpolated: a pupil that moves cannot flash.
+//
+// A kernel is round and given by its profile, unless the model overrides record_far_kernel(): then the profile serves the near field only.
+#pragma once
+
+#include "perception/glare/glare.h"
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_grid.h"
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace entoptic::perception {
+
+// Pupils are taken from 1 to 9 mm.
+constexpr double smallest_pupil_mm = 1, largest_pupil_mm = 9;
+
+// Data made on the CPU, read by the GPU for many frames: copied to the device's own memory by the first batch that is recorded.
+struct StaticBuffer {
+    gpu::Buffer staging, buffer;
+
+    template <class T> static Result<StaticBuffer> create(const gpu::Device& device, const std::vector<T>& data, const std::string& name) {
+        StaticBuffer made;
+        const std::size_t bytes = std::max<std::size_t>(data.size() * sizeof(T), 64);
+        ENTOPTIC_TRY(staging, gpu::Buffer::create(device, bytes, gpu::BufferKind::upload, name + ".staging"));
+        ENTOPTIC_TRY(buffer, gpu::Buffer::create(device, bytes, gpu::BufferKind::device, name));
+        if (!data.empty()) std::memcpy(staging.bytes().data(), data.data(), data.size() * sizeof(T));
+        made.staging = std::move(staging);
+        made.buffer = std::move(buffer);
+        return made;
+    }
+    void record_copy(gpu::Commands& commands) const { commands.copy(staging, buffer, buffer.size()); }
+};
+
+using RadialProfile = std::vector<RadialEntry>;
+
+// `entry` of each angle (rad) of a profile.
+RadialProfile make_profile(const std::function<RadialEntry(double)>& entry);
+// What a kernel of this profile scatters farther than `from_rad`, a share of the light, by channel.
+glm::dvec3 scattered_beyond(const RadialProfile& profile, glm::dvec3 weights, double from_rad);
+
+// One convolution. Those of all sources but `source_drawn` see the same picture and are added; one of `source_drawn` comes last.
+struct GlareTerm {
+    uint source = source_scene;    // see glare_gpu.h. Light of source_excess stays in its place, too; other light leaves it
+    uint kernel = 0;
+    float sign = 1;
+    bool near = true;              // with a near field; only source_scene and source_excess can have one
+    uint turn = 0;                 // channel c takes the source's channel (c + turn) mod 3
+};
+
+struct GlareSetup {
+    std::vector<RadialProfile> kernels;
+    std::vector<GlareTerm> terms;
+    float texel_px = 4;            // least width of a texel of the grid, pixels
+    float near_px = 8;             // radius of the near field, pixels; below 1: none
+    float near_from = 0;           // source_scene: light above this many times the adaptation luminance has a near field
+    float rebuild_mm = 0.2f;       // distance of the kernels' pupil diameters; 0: the pupil does not matter
+    float window_sigma_deg = 0;    // Gaussian window around the gaze; 0: whole field
+    vec3 gain{1};                  // energy of the whole kernel; not 1 for a kernel with a colour cast
+};
+
+// A kernel at one pupil diameter.
+struct GlareStrength {
+    glm::dvec3 weights{1, 0, 0};   // of its profile's parts
+    double scattered = 1;          // upper bound of the share of the light that leaves its pixel, for the gate
+};
+
+class GlareModel : public Model {
+public:
+    Result<void> record(StageIo& io) final;
+
+protected:
+    explicit GlareModel(const ModelContext& context) : context_(context) {}
+    // Called by create() of the model.
+    Result<void> make_kernels();
+    // Called by set_parameters() of the model.
+    void parameters_changed() { prepared_ = false; }
+
+    virtual GlareSetup setup() = 0;
+    virtual GlareStrength strength(uint kernel, double pupil_mm) const = 0;
+
+    // For kernels that are not round. prepare_far() makes buffers after setup(), record_first() fills them; both once per parameter set.
+    // record_far_kernel() writes a kernel to work(), as glare_kernel.comp does, and says true.
+    virtual Result<void> prepare_far() { return {}; }
+    virtual void record_first(StageIo&) {}
+    virtual bool record_far_kernel(StageIo&, uint /*kernel*/, double /*pupil_mm*/) { return false; }
+    // Forward transform of whole planes of work(), from the first on.
+    void record_transform(gpu::Commands& commands, uint planes);
+    const gpu::Buffer& work() const { return work_; }
+    uint work_planes() const { return 3 * pairs(); }
+
+    struct Wanted {
+        gpu::Kernel* kernel;
+        const char* name;
+        std::span<const std::uint32_t> spirv;
+        std::uint32_t buffers, push_bytes;
+        std::vector<std::uint32_t> specialization;
+    };
+    Result<void> make_kernel(const Wanted& w);
+    Result<void> make_buffer(gpu::Buffer& buffer, std::size_t bytes, const char* name);
+    template <class T> Result<void> make_static(StaticBuffer& to, const std::vector<T>& data, const char* name) {
+        ENTOPTIC_TRY(made, StaticBuffer::create(context_.device, data, name));
+        to = std::move(made);
+        return {};
+    }
+
+    float near_rad(uint kernel) const;     // the near field of a kernel ends here
+    double smallest_step() const { return grid_.smallest_step; }
+    double pitch() const { return grid_.pitch; }
+    const ModelContext context_;
+
+private:
+    // The two built kernels between which the pupil lies: diameters in steps of rebuild_mm.
+    struct KernelChoice {
+        long first = 0, second = 0;
+        float blend = 0;      // 0: first .. 1: second
+    };
+
+    Result<void> prepare();
+    Result<void> make_buffers();
+    Result<void> make_picture_passes();
+    void record_coverage(StageIo& io);
+    void record_kernel(StageIo& io, uint kernel, long steps);
+    void record_node_coverage(StageIo& io, uint key);
+    void record_gate(StageIo& io, KernelChoice choice);
+    void record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
+    void record_far(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
+    void record_apply(StageIo& io, const gpu::Kernel& apply);
+
+    KernelChoice choose_kernel(const StageIo& io) const;
+    GlareStrength blended(uint kernel, KernelChoice choice) const;
+    double diameter_mm(long steps) const { return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4; }
+    bool near_field() const { return setup_.near_px >= 1 && (near_source() == source_scene || near_source() == source_excess); }
+    uint near_source() const;
+    bool has(uint source) const;
+    bool leaves(const GlareTerm& term) const { return term.source != source_excess; }
+    uint key_of(uint kernel, long steps) const { return 2 * kernel + static_cast<uint>(steps & 1); }
+    uint pairs() const { return static_cast<uint>(grid_.patches.size() + 1) / 2; }
+    uint nodes() const { return grid_.nodes_x * grid_.nodes_y; }
+    float near_from() const { return near_source() == source_excess ? -1.0f : setup_.near_from; }
+    float window_sigma_rad() const;
+    LatticePush lattice(const StageIo& io, uint turn = 0) const {
+        return {io.width, io.height, grid_.nodes_x, grid_.nodes_y, grid_.step, io.tiles_x, io.tiles_y, near_field() ? 1u : 0u, turn};
+    }
+    FftPush all_rows() const { return {0, glare_n, 3, 0, 0, 0, static_cast<float>(grid_.damping)}; }
+    FftPush light_rows() const { return {grid_.first_row, grid_.rows, 3, 0, 0, 0, 0}; }
+
+    GlareSetup setup_;
+    bool prepared_ = false, first_recorded_ = false;
+    GlareGrid grid_;
+    float grid_texel_px_ = 0;
+    std::vector<std::optional<long>> built_;       // by key: diameter (in steps) of the kernel there
+
+    gpu::Kernel gate_, tiles_, coverage_, splat_, rows_forward_, rows_inverse_, columns_transform_, columns_convolve_, columns_kernel_,
+        gather_coverage_, gather_veil_, near_, kernel_kernel_, apply_, apply_drawn_;
+    gpu::Kernel pixels_[4];                        // by source
+    StaticBuffer twiddle_, taps_, splat_offsets_, splat_entries_, profiles_;
+    gpu::Buffer work_, coverage_rows_, spectra_, node_values_, node_exchange_, node_coverage_, near_tiles_, flags_, near_light_;
+};
+
+}  // namespace entoptic::perception
