@@ -73,13 +73,6 @@ double filter_coverage(dvec2 at, const FraunhoferMaskParams& p, double pitch) {
 
 // --- eyelashes ---
 
-struct Lash {
-    dvec2 root, down, across;     // down: unit, away from the lid
-    double length, curl;
-    // Point at the share s of its length: falls away from the lid, and with `curl` comes up again.
-    dvec2 at(double s) const { return root + length * s * ((1 - curl * s) * down + 0.25 * curl * s * across); }
-};
-
 // What covers the samples of one lash.
 void draw_strip(const Plane& plane, dvec2 a, dvec2 b, double half_width, std::vector<double>& opaque, std::vector<int>& touched) {
     const double length = glm::length(b - a), pitch = plane.pitch();
@@ -103,33 +96,12 @@ void draw_strip(const Plane& plane, dvec2 a, dvec2 b, double half_width, std::ve
         }
 }
 
-// Lashes stand on the whole lid, 30 mm wide, so that light from the side meets others. choice: they spread like a fan, and differ a little.
-std::vector<Lash> grow_lashes(const FraunhoferMaskParams& p, const LidEdges& lids, double shift_mm) {
-    std::vector<Lash> list;
-    const double spacing = 10 / static_cast<double>(p.lashes);
-    const auto seed = static_cast<std::uint64_t>(std::llround(std::max(p.lash_seed, 0.0f)));
-    for (int i = static_cast<int>(std::ceil(-15 / spacing)); i * spacing <= 15; ++i) {
-        const auto random = [&](std::uint64_t k) { return uniform01(seed, static_cast<std::uint64_t>(i + 100000) * 4 + k); };
-        const double x = (i + random(0) - 0.5) * spacing;
-        const double lean = 0.04 * x + 0.25 * (random(1) - 0.5);
-        Lash lash;
-        lash.root = {x + shift_mm, lids.upper - x * x / (2 * lid_radius_mm)};
-        lash.down = {std::sin(lean), -std::cos(lean)};
-        lash.across = {std::cos(lean), std::sin(lean)};
-        if (lean < 0) lash.across = -lash.across;
-        lash.length = static_cast<double>(p.lash_length_mm) * (0.8 + 0.4 * random(2));
-        lash.curl = std::clamp(static_cast<double>(p.lash_curl) * (0.7 + 0.6 * random(3)), 0.0, 1.0);
-        list.push_back(lash);
-    }
-    return list;
-}
-
-void draw_lashes(const FraunhoferMaskParams& p, const LidEdges& lids, double shift_mm, const Plane& plane, ImageD& passes) {
+void draw_lashes(const FraunhoferMaskParams& p, double open, double shift_mm, const Plane& plane, ImageD& passes) {
     constexpr int pieces = 16;
     std::vector<double> opaque(passes.data.size(), 0);
     std::vector<int> touched;
-    for (const Lash& lash : grow_lashes(p, lids, shift_mm)) {
-        const int count = p.lash_curl > 0 ? pieces : 1;
+    for (const Lash& lash : grow_lashes(p, open, shift_mm)) {
+        const int count = lash.curl > 0 ? pieces : 1;
         for (int k = 0; k < count; ++k)
             draw_strip(plane, lash.at(static_cast<double>(k) / count), lash.at((k + 1.0) / count), 0.5 * static_cast<double>(p.lash_width_mm), opaque, touched);
         for (const int i : touched) {
@@ -237,11 +209,36 @@ LidEdges lid_edges(double open) {
     return {-4 + 9.5 * o, -4 - 1.5 * o};
 }
 
+// Lashes stand on the whole lid, 30 mm wide, so that light from the side meets others. choice: they spread like a fan, and differ a little.
+// They turn up with the lid that lifts them: of an open eye they only touch a wide pupil.
+std::vector<Lash> grow_lashes(const FraunhoferMaskParams& p, double open, double shift_mm) {
+    std::vector<Lash> list;
+    const LidEdges lids = lid_edges(open);
+    const double curl = glm::mix(static_cast<double>(p.lash_curl), 1.0, std::clamp(open, 0.0, 1.0));
+    const double spacing = 10 / static_cast<double>(p.lashes);
+    const auto seed = static_cast<std::uint64_t>(std::llround(std::max(p.lash_seed, 0.0f)));
+    for (int i = static_cast<int>(std::ceil(-15 / spacing)); i * spacing <= 15; ++i) {
+        const auto random = [&](std::uint64_t k) { return uniform01(seed, static_cast<std::uint64_t>(i + 100000) * 4 + k); };
+        const double x = (i + random(0) - 0.5) * spacing;
+        const double lean = 0.04 * x + 0.25 * (random(1) - 0.5);
+        Lash lash;
+        lash.root = {x + shift_mm, lids.upper - x * x / (2 * lid_radius_mm)};
+        lash.down = {std::sin(lean), -std::cos(lean)};
+        lash.across = {std::cos(lean), std::sin(lean)};
+        if (lean < 0) lash.across = -lash.across;
+        lash.length = static_cast<double>(p.lash_length_mm) * (0.8 + 0.4 * random(2));
+        lash.curl = curl * (0.85 + 0.15 * random(3));
+        list.push_back(lash);
+    }
+    return list;
+}
+
 ApertureRaster raster_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture, const ApertureState& state, int n, double plane_mm) {
     const Plane plane{n, plane_mm};
     const double pitch = plane.pitch(), radius = 0.5 * state.pupil_mm, shift = state.obstacle_shift_mm;
     const int blades = static_cast<int>(std::lround(p.blades));
-    const LidEdges lids = lid_edges(state.eyelid_open * static_cast<double>(p.lid_open));
+    const double open = state.eyelid_open * static_cast<double>(p.lid_open);
+    const LidEdges lids = lid_edges(open);
     ApertureRaster out{n, plane_mm, ImageD(n, n, 1), 0};
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
@@ -254,7 +251,7 @@ ApertureRaster raster_aperture(const FraunhoferMaskParams& p, const MaskPicture*
             if (share > 0 && p.filter_directions >= 0.5f) share *= filter_coverage(obstacle, p, pitch);
             out.amplitude.at(x, y, 0) = share;
         }
-    if (p.lashes >= 0.5f) draw_lashes(p, lids, shift, plane, out.amplitude);
+    if (p.lashes >= 0.5f) draw_lashes(p, open, shift, plane, out.amplitude);
     if (picture) {
         ImageD mean(n, n, 1), square(n, n, 1);
         draw_picture(picture->transmission, static_cast<double>(p.mask_width_mm), shift, plane, mean, square);

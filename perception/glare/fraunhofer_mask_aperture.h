@@ -6,8 +6,10 @@
 #include "base/result.h"
 #include "perception/glare/fraunhofer_mask_params.h"
 
+#include <glm/glm.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace entoptic::perception {
 
@@ -46,5 +48,13 @@ struct LidEdges {
 };
 LidEdges lid_edges(double open);
 constexpr double lid_radius_mm = 14;
+
+// An eyelash before the pupil, a curve of the share s of its length: falls away from the lid, and with `curl` comes up again.
+struct Lash {
+    glm::dvec2 root, down, across;     // down: unit, away from the lid
+    double length, curl;
+    glm::dvec2 at(double s) const { return root + length * s * ((1 - curl * s) * down + 0.25 * curl * s * across); }
+};
+std::vector<Lash> grow_lashes(const FraunhoferMaskParams& params, double open, double shift_mm);
 
 }  // namespace entoptic::perception

@@ -1,4 +1,4 @@
-// The optics of fraunhofer_mask: where a direction lies in the table of diffracted light, and the paper's tone curve.
+// The optics of fraunhofer_mask: where a direction lies in the table of diffracted light.
 // Compiled in float and in double.
 //
 // The table holds K theta^3 of the light per sr, K, that is diffracted through sine and azimuth: rows in equal steps of log(sine), columns in
@@ -38,14 +38,7 @@ FN real mask_column(rvec2 offset) {
 // Level whose entries are as large as a square of this width, rad, seen at theta.
 FN real mask_level(real theta, real width) { return clamp(log(max(width / (theta * mask_step()), LIT(1.0))) * LIT(1.4426950408889634), LIT(0.0), LIT(7.0)); }
 
-// --- tone curve ---
-
-// Kakimoto 2004, eq. 7, with the numerator x^g + 1/k of Tumblin, Hodgins and Guenter 1999 (misprint, facts 3.3 trap K3): only then is the
-// ratio of the largest output to the least k^2, as the paper says. D = 640, k = 20, g = 0.465 (section 3.4). 0 .. 640 of 255.
-FN real tumblin_sigmoid(real x) {
-    real power = x > LIT(0.0) ? exp(LIT(0.465) * log(x)) : LIT(0.0);
-    return LIT(640.0) * (power + LIT(0.05)) / (power + LIT(20.0));
-}
+// Eq. 7 of the paper as printed; the one in use is tumblin_sigmoid() of glare_math.glsl.
 FN real printed_sigmoid(real x) {
     real power = x > LIT(0.0) ? exp(LIT(0.465) * log(x)) : LIT(0.0);
     return LIT(640.0) * (power + LIT(1.0)) / (power + LIT(20.0));

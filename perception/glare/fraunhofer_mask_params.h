@@ -15,7 +15,7 @@ struct FraunhoferMaskParams {
     float lashes;               // eyelashes on 10 mm of the upper lid; 0: none
     float lash_width_mm;
     float lash_length_mm;
-    float lash_curl;            // 0: hang straight down .. 1: come up again to the lid
+    float lash_curl;            // of the closed eye; 0: hang straight down .. 1: come up again to the lid, as those of the open eye do
     float lash_seed;
     float lids;                 // 1: the eyelids are obstacles, opened by EyeInput::eyelid_open
     float lid_open;             // times EyeInput::eyelid_open

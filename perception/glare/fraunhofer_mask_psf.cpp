@@ -1,7 +1,7 @@
 #include "perception/glare/fraunhofer_mask_psf.h"
 
 #include "perception/glare/fraunhofer_mask_math.glsl"
-#include "perception/glare/luidolt_spectral_math.glsl"
+#include "perception/glare/glare_spectrum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,8 @@ using namespace fraunhofer_mask;
 using Complex = std::complex<double>;
 
 constexpr double pi = 3.14159265358979323846;
+
+double sinc(double x) { return std::abs(x) < 1e-9 ? 1 : std::sin(pi * x) / (pi * x); }
 
 // Stockham, radix 2: natural order in and out.
 void transform_line(Complex* line, Complex* spare, int n, const std::vector<Complex>& turns) {
@@ -131,7 +133,7 @@ Psf make_psf(const ApertureRaster& aperture) {
     // Parseval: |F|^2 over all frequencies sums to n^2 times what passes. A sample is the mean over its square, which damps |F|^2 by sinc^2 of
     // each frequency (trap L12).
     std::vector<double> undamped(static_cast<std::size_t>(n));
-    for (int k = 0; k < n; ++k) undamped[static_cast<std::size_t>(k)] = std::pow(luidolt_spectral::sinc(static_cast<double>(k - n / 2) / n), -2);
+    for (int k = 0; k < n; ++k) undamped[static_cast<std::size_t>(k)] = std::pow(sinc(static_cast<double>(k - n / 2) / n), -2);
     const double scale = 1 / (static_cast<double>(n) * n * aperture.passed * psf.bin_per_mm * psf.bin_per_mm);
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
@@ -143,17 +145,10 @@ Psf make_psf(const ApertureRaster& aperture) {
 
 DiffractedSpectrum diffracted_spectrum(const FraunhoferMaskParams& p) {
     if (p.three_lines > 0.5f) return {{0.680, 0.530, 0.460}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    // Midpoints of 400..700 nm (trap L9), equal energy; each colour normalised, so that white stays white.
-    const int count = std::clamp(static_cast<int>(std::lround(p.wavelengths)), 3, 64);
+    const GlareSpectrum midpoints = midpoint_spectrum(std::clamp(static_cast<int>(std::lround(p.wavelengths)), 3, 64));
     DiffractedSpectrum s;
-    glm::dvec3 sum{0};
-    for (int i = 0; i < count; ++i) {
-        const double nm = 400 + 300 * (i + 0.5) / count;
-        s.lambda_um.push_back(nm / 1000);
-        s.weight.push_back(luidolt_spectral::rgb_of_xyz(luidolt_spectral::wyman_xyz(nm)));
-        sum += s.weight.back();
-    }
-    for (glm::dvec3& w : s.weight) w /= sum;
+    for (const double nm : midpoints.nm) s.lambda_um.push_back(nm / 1000);
+    s.weight = midpoints.weight;
     return s;
 }
 
@@ -176,7 +171,7 @@ std::vector<vec3> make_mask_table(const Psf& psf, const DiffractedSpectrum& spec
     return table;
 }
 
-double scattered_beyond(const std::vector<vec3>& table, double sine) {
+double diffracted_beyond(const std::vector<vec3>& table, double sine) {
     glm::dvec3 sum{0};
     const auto ring = [&](uint row) {
         glm::dvec3 total{0};

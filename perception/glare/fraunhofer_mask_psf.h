@@ -39,7 +39,7 @@ DiffractedSpectrum diffracted_spectrum(const FraunhoferMaskParams& params);
 
 // The PSF of all wavelengths over sine (log) and azimuth (linear), see fraunhofer_mask_math.glsl: level 0, then its means over 2 x 2, 4 x 4 …
 std::vector<vec3> make_mask_table(const Psf& psf, const DiffractedSpectrum& spectrum);
-// Largest number of wavelengths, times light outside the sine `from`, of the table: an upper bound of the share that leaves a pixel.
-double scattered_beyond(const std::vector<vec3>& table, double sine);
+// Share of the light that the table sends farther than a sine, of the channel that sends most.
+double diffracted_beyond(const std::vector<vec3>& table, double sine);
 
 }  // namespace entoptic::perception
