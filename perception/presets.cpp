@@ -26,6 +26,10 @@ std::span<const Preset> presets() {
           {"acuity", "as_printed", 1},
           {"tone", "as_printed", 1},
           {"mesopic", "as_printed", 1}}},
+        {"kakimoto2004",
+         "Kakimoto et al. 2004: half-closed eyelashes, three wavelengths, the veil through their tone curve (corrected, facts: trap K3)",
+         {{"glare", "fraunhofer_mask"}},
+         {{"glare", "three_lines", 1}, {"glare", "sigmoid", 1}, {"glare", "lid_open", 0.6f}}},
     };
     return table;
 }

@@ -247,7 +247,7 @@ ApertureRaster raster_aperture(const FraunhoferMaskParams& p, const MaskPicture*
             double share = blades >= 3 ? polygon_coverage(at, radius, blades, static_cast<double>(p.blade_rotation_deg) * degree, pitch)
                                        : disc_coverage(at, radius, pitch);
             const dvec2 obstacle = at - dvec2(shift, 0);
-            if (share > 0 && p.lids > 0.5f) share *= lids_coverage(obstacle, lids, pitch);
+            if (share > 0 && p.lids > 0.5f) share *= lids_coverage(at - dvec2(lid_shift_mm(p, shift), 0), lids, pitch);
             if (share > 0 && p.filter_directions >= 0.5f) share *= filter_coverage(obstacle, p, pitch);
             out.amplitude.at(x, y, 0) = share;
         }

@@ -6,6 +6,7 @@
 #include "base/result.h"
 #include "perception/glare/fraunhofer_mask_params.h"
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
@@ -47,7 +48,12 @@ struct LidEdges {
     double upper = 0, lower = 0;
 };
 LidEdges lid_edges(double open);
-constexpr double lid_radius_mm = 14;
+constexpr double lid_radius_mm = 22;      // 5 mm lower at the corners, 30 mm apart
+// The lids lie on the eye, this far before its pupil; lashes, filters and pictures farther out.
+constexpr double lid_distance_mm = 4;
+inline double lid_shift_mm(const FraunhoferMaskParams& p, double shift_mm) {
+    return shift_mm * std::min(1.0, lid_distance_mm / std::max(static_cast<double>(p.obstacle_mm), 1e-3));
+}
 
 // An eyelash before the pupil, a curve of the share s of its length: falls away from the lid, and with `curl` comes up again.
 struct Lash {

@@ -36,7 +36,7 @@ ImageD point_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture,
             const double within = turned - sector * std::floor(turned / sector) - sector / 2;
             if (r * std::cos(within) > radius * std::cos(sector / 2)) return 0;
         }
-        const double u = x - shift_mm, bend = u * u / (2 * lid_radius_mm);
+        const double u = x - shift_mm, from_lid = x - lid_shift_mm(p, shift_mm), bend = from_lid * from_lid / (2 * lid_radius_mm);
         if (p.lids > 0.5f && (y > lids.upper - bend || y < lids.lower + bend)) return 0;
         for (int k = 0; k < directions; ++k) {
             const double angle = static_cast<double>(p.filter_rotation_deg) * pi / 180 + k * pi / directions;
