@@ -84,7 +84,8 @@ private:
     };
 
     GlareSetup setup() override;
-    GlareStrength strength(uint kernel, double pupil_mm) const override;
+    glm::dvec3 weights(uint, double) const override { return {1, 0, 0}; }      // not of a profile
+    double scattered(uint kernel, KernelChoice choice) const override;
     Result<void> prepare_far() override;
     KernelChoice choose_kernel(const StageIo& io) override;
     bool record_far_kernel(StageIo& io, uint kernel, long number) override;
@@ -140,14 +141,14 @@ double FraunhoferMask::share_diffracted(const MaskTables& tables) const {
     return std::min(share, 1.0);
 }
 double FraunhoferMask::safe_strength(const MaskTables& tables) const {
-    return std::min(static_cast<double>(params_.strength), 0.9 / std::max(share_diffracted(tables), 0.09));
+    return std::min(static_cast<double>(params_.strength), most_scattered / std::max(share_diffracted(tables), 1e-9));
 }
 
-GlareStrength FraunhoferMask::strength(uint, double) const {
-    double scattered = 0;
+double FraunhoferMask::scattered(uint, KernelChoice) const {
+    double most = 0;
     for (const Shown* shown : {&now_, &next_})
-        if (shown->tables) scattered = std::max(scattered, safe_strength(*shown->tables) * share_diffracted(*shown->tables));
-    return {{1, 0, 0}, scattered};
+        if (shown->tables) most = std::max(most, safe_strength(*shown->tables) * share_diffracted(*shown->tables));
+    return most;
 }
 
 // Both eyes see through one kernel: pupils and lids move together.

@@ -52,18 +52,24 @@ RadialProfile make_profile(const std::function<RadialEntry(double)>& entry_of) {
     return profile;
 }
 
-glm::dvec3 scattered_beyond(const RadialProfile& profile, glm::dvec3 weights, double from_rad) {
+glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from_rad) {
     const double step = std::log(pi / static_cast<double>(radial_first)) / (radial_entries - 1);
     glm::dvec3 sum{0};
+    if (profile.empty()) return sum;      // of a kernel that is not round
     for (uint i = 0; i < radial_entries; ++i) {
         const double theta = glare::radial_angle(i, static_cast<double>(radial_first), radial_entries);
-        if (theta < from_rad) continue;
-        glm::dvec3 value{0};
-        for (uint k = 0; k < radial_parts; ++k) value += weights[static_cast<int>(k)] * glm::dvec3(profile[i].part[k]);
         // d(omega) = 2 pi sin(theta) dtheta, dtheta = theta d(log theta).
-        sum += value * (2 * pi * std::sin(theta) * theta * step);
+        if (theta >= from_rad) sum += glm::abs(glm::dvec3(profile[i].part[part])) * (2 * pi * std::sin(theta) * theta * step);
     }
     return sum;
+}
+
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> difference) {
+    if (photographic) return {{source_scene, 0}};
+    std::vector<GlareTerm> terms = {{source_excess, 0}};
+    if (difference) terms.push_back({source_displayed, *difference, 1, false});
+    if (rescatter > 0) terms.push_back({source_drawn, wearer, -rescatter, false});
+    return terms;
 }
 
 Result<void> GlareModel::make_kernels() {
@@ -133,6 +139,15 @@ Result<void> GlareModel::prepare() {
     if (setup_.texel_px != grid_texel_px_) {
         grid_ = make_glare_grid(context_.views, static_cast<double>(setup_.texel_px));
         grid_texel_px_ = setup_.texel_px;
+    }
+    shares_.clear();
+    for (const RadialProfile& profile : setup_.kernels) {
+        glm::dvec3 share;
+        for (uint part = 0; part < radial_parts; ++part) {
+            const glm::dvec3 rgb = scattered_beyond(profile, part, 0.5 * grid_.smallest_step);
+            share[static_cast<int>(part)] = std::max({rgb.x, rgb.y, rgb.z});
+        }
+        shares_.push_back(share);
     }
     ENTOPTIC_CHECK(make_picture_passes());
     ENTOPTIC_CHECK(make_buffers());
@@ -215,7 +230,7 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     const double pupil_mm = diameter_mm(steps);
     c.barrier();
     if (!record_far_kernel(io, kernel, steps)) {
-        const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(strength(kernel, pupil_mm).weights)};
+        const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(safe_weights(kernel, pupil_mm))};
         c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, {glare_n / 64, glare_n, 1});
     }
     c.barrier();
@@ -289,10 +304,17 @@ GlareModel::KernelChoice GlareModel::choose_kernel(const StageIo& io) {
     return {static_cast<long>(floor), static_cast<long>(floor) + 1, static_cast<float>(steps - floor)};
 }
 
-GlareStrength GlareModel::blended(uint kernel, KernelChoice choice) const {
-    const GlareStrength a = strength(kernel, diameter_mm(choice.first)), b = strength(kernel, diameter_mm(choice.second));
-    return {glm::mix(a.weights, b.weights, static_cast<double>(choice.blend)), std::max(a.scattered, b.scattered)};
+glm::dvec3 GlareModel::safe_weights(uint kernel, double pupil_mm) const {
+    const glm::dvec3 wanted = weights(kernel, pupil_mm);
+    const double scattered = glm::dot(glm::abs(wanted), shares_[kernel]);
+    return wanted * std::min(1.0, most_scattered / std::max(scattered, 1e-9));
 }
+
+glm::dvec3 GlareModel::blended(uint kernel, KernelChoice choice) const {
+    return glm::mix(safe_weights(kernel, diameter_mm(choice.first)), safe_weights(kernel, diameter_mm(choice.second)), static_cast<double>(choice.blend));
+}
+
+double GlareModel::scattered(uint kernel, KernelChoice choice) const { return glm::dot(glm::abs(blended(kernel, choice)), shares_[kernel]); }
 
 Result<void> GlareModel::record(StageIo& io) {
     if (!prepared_) ENTOPTIC_CHECK(prepare());
@@ -332,7 +354,7 @@ void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
     GatePush gate{};
     for (const GlareTerm& term : setup_.terms) {
         if (term.source == source_excess) gate.excess = 1;
-        if (term.source == source_scene || term.source == source_displayed) gate.scattered += static_cast<float>(blended(term.kernel, choice).scattered);
+        if (term.source == source_scene || term.source == source_displayed) gate.scattered += static_cast<float>(scattered(term.kernel, choice));
     }
     gate.views = io.views;
     gate.always = setup_.gain == vec3(1) ? 0 : 1;
@@ -354,7 +376,7 @@ void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
 void GlareModel::record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) {
     const Gaze gaze(io);
     const NearPush push{io.width, io.height, io.tiles_x, io.tiles_y, term.kernel * radial_entries, term.turn, leaves(term) ? 1u : 0u, add ? 1u : 0u,
-                        near_rad(term.kernel), near_from(), window_sigma_rad(), vec3(blended(term.kernel, choice).weights * static_cast<double>(term.sign)),
+                        near_rad(term.kernel), near_from(), window_sigma_rad(), vec3(blended(term.kernel, choice) * static_cast<double>(term.sign)),
                         {gaze.of[0], gaze.of[1]}};
     if (add) io.commands.barrier();
     io.commands.dispatch_indirect(near_, {io.scene, io.state, near_tiles_, io.geometry, profiles_.buffer, near_light_}, push, io.gate, entry(gate_near));

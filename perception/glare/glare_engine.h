@@ -1,5 +1,5 @@
 // The engine of all glare models: convolution of a picture's light with kernels of any width, on the sphere. A model says what the kernels
-// are (GlareSetup, made when parameters change; GlareStrength, by pupil) and which light each of them scatters (GlareTerm); everything
+// are (GlareSetup, made when parameters change; their weights, by pupil) and which light each of them scatters (GlareTerm); everything
 // per frame is done here:
 //   gate; pixels -> nodes -> texels of an equi-angular grid; transform, product, transform; texels -> nodes -> pixels; near field in space.
 // Kernels stand at multiples of rebuild_mm of the pupil's diameter, and what lies between is interpolated: a pupil that moves cannot flash.
@@ -21,6 +21,8 @@ namespace entoptic::perception {
 
 // Pupils are taken from 1 to 9 mm.
 constexpr double smallest_pupil_mm = 1, largest_pupil_mm = 9;
+// Largest share of the light that may leave its pixel.
+constexpr double most_scattered = 0.9;
 
 // Data made on the CPU, read by the GPU for many frames: copied to the device's own memory by the first batch that is recorded.
 struct StaticBuffer {
@@ -43,8 +45,8 @@ using RadialProfile = std::vector<RadialEntry>;
 
 // `entry` of each angle (rad) of a profile.
 RadialProfile make_profile(const std::function<RadialEntry(double)>& entry);
-// What a kernel of this profile scatters farther than `from_rad`, a share of the light, by channel.
-glm::dvec3 scattered_beyond(const RadialProfile& profile, glm::dvec3 weights, double from_rad);
+// What a part of a profile scatters farther than `from_rad`, a share of the light, by channel; of the sizes where a kernel has both signs.
+glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from_rad);
 
 // One convolution. Those of all sources but `source_drawn` see the same picture and are added; one of `source_drawn` comes last.
 struct GlareTerm {
@@ -55,6 +57,13 @@ struct GlareTerm {
     uint turn = 0;                 // channel c takes the source's channel (c + turn) mod 3
     uint zone = 0;                 // of GlareSetup::zones, each with a kernel of its own
 };
+
+// Terms of an eye in the scene, seen by a wearer in front of a panel. `photographic`: the whole scene is scattered by kernel 0. Else the wearer's
+// own eye already scatters what the panel sends, and what is left is
+//   the light that the panel cannot send, scattered by the person's eye (kernel 0),
+//   less what the wearer's eye (`wearer`) scatters of what this draws: `rescatter` of it,
+//   and, where person and wearer differ, the displayed light scattered by the difference of both (`difference`).
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> difference);
 
 struct GlareSetup {
     std::vector<RadialProfile> kernels;
@@ -70,12 +79,6 @@ struct GlareSetup {
     bool sigmoid = false;          // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
 };
 
-// A kernel at one pupil diameter.
-struct GlareStrength {
-    glm::dvec3 weights{1, 0, 0};   // of its profile's parts
-    double scattered = 1;          // upper bound of the share of the light that leaves its pixel, for the gate
-};
-
 class GlareModel : public Model {
 public:
     Result<void> record(StageIo& io) final;
@@ -88,7 +91,8 @@ protected:
     void parameters_changed() { prepared_ = false; }
 
     virtual GlareSetup setup() = 0;
-    virtual GlareStrength strength(uint kernel, double pupil_mm) const = 0;
+    // Of the parts of a kernel's profile. Lowered here where more than 0.9 of the light would leave its pixel and the direct light turn negative.
+    virtual glm::dvec3 weights(uint kernel, double pupil_mm) const = 0;
 
     // For kernels that are not round. prepare_far() makes buffers after setup(), record_first() fills them; both once per parameter set.
     // record_far_kernel() writes a kernel to work(), as glare_kernel.comp does, and says true. `steps`: see KernelChoice.
@@ -106,6 +110,8 @@ protected:
     };
     virtual KernelChoice choose_kernel(const StageIo& io);
     double diameter_mm(long steps) const { return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4; }
+    // Upper bound of the share of the light that leaves its pixel, for the gate.
+    virtual double scattered(uint kernel, KernelChoice choice) const;
     // The near field of a term, into near_light() of the tiles in near_tiles(); `add`: to what is there.
     virtual void record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
     const gpu::Buffer& near_tiles() const { return near_tiles_; }
@@ -148,7 +154,8 @@ private:
     void record_far(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
     void record_apply(StageIo& io, const gpu::Kernel& apply);
 
-    GlareStrength blended(uint kernel, KernelChoice choice) const;
+    glm::dvec3 safe_weights(uint kernel, double pupil_mm) const;
+    glm::dvec3 blended(uint kernel, KernelChoice choice) const;
     bool near_field() const { return setup_.near_px >= 1 && (near_source() == source_scene || near_source() == source_excess); }
     uint near_source() const;
     bool has(uint source) const;
@@ -167,6 +174,7 @@ private:
     bool prepared_ = false, first_recorded_ = false;
     GlareGrid grid_;
     float grid_texel_px_ = 0;
+    std::vector<glm::dvec3> shares_;     // by kernel: share of the light that leaves its pixel by each part of weight 1
     std::vector<std::optional<long>> built_;       // by key: diameter (in steps) of the kernel there
 
     gpu::Kernel gate_, tiles_, coverage_, splat_, rows_forward_, rows_inverse_, columns_transform_, columns_convolve_, columns_kernel_,

@@ -181,6 +181,42 @@ ImageD Scatter::operator()(const ImageD& source, const Kernel& kernel, bool leav
     return out;
 }
 
+Rgb energy(const std::function<Rgb(double)>& per_sr, double from, double to) {
+    Rgb sum{};
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+        const double theta = from * std::pow(to / from, (i + 0.5) / steps), width = theta * std::log(to / from) / steps;
+        const Rgb value = per_sr(theta);
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c] * 2 * pi * std::sin(theta) * width;
+    }
+    return sum;
+}
+
+ImageD seen(const ImageD& image, const Scatter& scatter, const Kernel& person, const Kernel& wearer, bool differ, double white, double rescatter,
+            bool photographic) {
+    ImageD out = image;
+    const auto add = [&](const ImageD& light, double sign) {
+        for (std::size_t i = 0; i < out.data.size(); ++i) out.data[i] = std::max(out.data[i] + sign * light.data[i], 0.0);
+    };
+    if (photographic) {
+        add(scatter(image, person, true), 1);
+        return out;
+    }
+    ImageD excess = image, shown = image;
+    for (double& v : excess.data) v = std::max(v - white, 0.0);
+    for (double& v : shown.data) v = std::min(v, white);
+    ImageD added = scatter(excess, person, false);
+    if (differ) {
+        const ImageD by_person = scatter(shown, person, true), by_wearer = scatter(shown, wearer, true);
+        for (std::size_t i = 0; i < added.data.size(); ++i) added.data[i] += by_person.data[i] - by_wearer.data[i];
+    }
+    add(added, 1);
+    ImageD drawn = out;
+    for (std::size_t i = 0; i < drawn.data.size(); ++i) drawn.data[i] = std::min(out.data[i], white) - shown.data[i];
+    if (rescatter > 0) add(scatter(drawn, wearer, true), -rescatter);
+    return out;
+}
+
 namespace {
 
 double lobe(double a, double nm, double m, double s1, double s2) { return a * std::exp(-0.5 * std::pow((nm - m) / (nm < m ? s1 : s2), 2)); }

@@ -58,6 +58,15 @@ private:
     std::vector<double> solid_angle_;
 };
 
+// What a kernel scatters from `from` to `to` (rad), by channel.
+Rgb energy(const std::function<Rgb(double theta)>& per_sr, double from, double to);
+
+// The residual form: out = C + what the panel cannot send, scattered by the person's eye; plus the displayed light, scattered by the
+// difference of person and wearer; less `rescatter` times what the wearer's eye scatters of the light that all this adds to the panel's.
+// `photographic`: out = C + sum of K (C(y) - C(x)).
+ImageD seen(const ImageD& image, const Scatter& scatter, const Kernel& person, const Kernel& wearer, bool differ, double white_cd_m2, double rescatter,
+            bool photographic);
+
 // --- optics ---
 
 struct Wave {

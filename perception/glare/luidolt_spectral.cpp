@@ -61,7 +61,7 @@ public:
 
 private:
     GlareSetup setup() override;
-    GlareStrength strength(uint kernel, double pupil_mm) const override;
+    glm::dvec3 weights(uint kernel, double pupil_mm) const override;
     Result<void> prepare_far() override;
     void record_first(StageIo& io) override;
     bool record_far_kernel(StageIo& io, uint kernel, long steps) override;
@@ -106,10 +106,9 @@ GlareSetup LuidoltSpectral::setup() {
     return setup;
 }
 
-GlareStrength LuidoltSpectral::strength(uint, double pupil_mm) const {
-    const double f = covered_share(params_, pupil_mm), times = safe(pupil_mm);
-    return {{times * f, times * (1 - f) * static_cast<double>(params_.diffraction) / pupil_mm, 0},
-            times * scattered_share(params_, spectrum_, pupil_mm, smallest_step())};
+glm::dvec3 LuidoltSpectral::weights(uint, double pupil_mm) const {
+    const double f = covered_share(params_, pupil_mm);
+    return safe(pupil_mm) * glm::dvec3(f, (1 - f) * static_cast<double>(params_.diffraction) / pupil_mm, 0);
 }
 
 Result<void> LuidoltSpectral::prepare_far() {

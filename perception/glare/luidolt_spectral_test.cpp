@@ -1,20 +1,13 @@
 // labels: gpu
-#include "perception/glare/glare_grid.h"
-#include "perception/glare/glare_math.glsl"
+#include "perception/glare/glare_testing.h"
 #include "perception/glare/luidolt_spectral_pupil.h"
-#include "perception/testing/harness.h"
-#include "perception/testing/oracles.h"
-#include "perception/testing/scenes.h"
-#include "shaders/geometry.glsl"
 
 #include "perception/glare/glare_columns.comp.h"
 #include "perception/glare/glare_rows.comp.h"
 #include "perception/glare/luidolt_spectral_particles.comp.h"
 #include "perception/glare/luidolt_spectral_structure.comp.h"
 
-#include <complex>
 #include <cstring>
-#include <fftw3.h>
 #include <limits>
 #include <random>
 
@@ -24,8 +17,6 @@ namespace {
 using namespace testing;
 const auto* guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
 const char* const name = "glare.luidolt_spectral";
-constexpr double pi = 3.14159265358979323846;
-constexpr double degree = pi / 180;
 
 Selection model(const std::vector<std::string>& settings = {}) { return only({"glare=luidolt_spectral"}, settings); }
 Selection with_tone(const std::vector<std::string>& settings = {}) { return only({"glare=luidolt_spectral", "tone=key_reinhard"}, settings); }
@@ -42,28 +33,6 @@ std::vector<float> values_of(const LuidoltSpectralParams& p) {
     return values;
 }
 
-// A stage with glare, an adaptation and a pupil.
-class Glare {
-public:
-    Glare(EyeGeometry geometry, Selection selection, float adaptation = 1, std::size_t views = 1)
-        : runner_(std::vector<EyeGeometry>(views, geometry), std::move(selection)), views_(views), adaptation_(adaptation) {}
-    ImageF at(const ImageF& picture, float pupil_mm = 4) { return at(std::vector<ImageF>(views_, picture), pupil_mm)[0]; }
-    std::vector<ImageF> at(const std::vector<ImageF>& pictures, float pupil_mm = 4) {
-        FrameInput input = still_input(views_);
-        for (EyeInput& eye : input.eyes) eye.pupil_diameter_mm = pupil_mm;
-        runner_.stage().set_adaptation(adaptation_);
-        auto out = runner_.run(pictures, input);
-        for (const EffectOutcome& outcome : runner_.stage().effects()) EXPECT_EQ(outcome.failed, "");
-        return out;
-    }
-    EffectOutcome outcome() { return runner_.stage().effects().at(0); }
-
-private:
-    StageRunner runner_;
-    std::size_t views_;
-    float adaptation_;
-};
-
 ImageD reference(const ImageF& picture, const EyeGeometry& g, const LuidoltSpectralParams& p, double adaptation, float pupil_mm = 4) {
     ReferenceFrame frame{convert<double>(picture), g, {}, {}, 0, false, adaptation, 1};
     frame.eye.pupil_diameter_mm = pupil_mm;
@@ -78,17 +47,6 @@ template <class T> ImageD toned(const Image<T>& light, double adaptation) {
     tone.create_reference()->apply(frame, default_parameters(tone));
     return frame.image;
 }
-
-void fill(ImageF& image, int x0, int y0, int w, int h, float r, float g, float b) {
-    for (int y = y0; y < y0 + h; ++y)
-        for (int x = x0; x < x0 + w; ++x) image.at(x, y, 0) = r, image.at(x, y, 1) = g, image.at(x, y, 2) = b;
-}
-void fill(ImageF& image, int x0, int y0, int w, int h, float v) { fill(image, x0, y0, w, h, v, v, v); }
-
-// 9.6 pixels per degree on the axis, as the middle of a headset: grid at 4 pixels a texel and near field both at work.
-EyeGeometry native() { return rectilinear(96, 80, 10); }
-// A wide field at low resolution.
-EyeGeometry wide() { return rectilinear(180, 200, 100); }
 
 // --- the pieces ---
 
@@ -116,14 +74,6 @@ std::vector<vec2> twiddles() {
     std::vector<vec2> table;
     for (uint n = 0; n < glare_n; ++n) table.push_back(glm::dvec2(std::cos(2 * pi * n / glare_n), -std::sin(2 * pi * n / glare_n)));
     return table;
-}
-
-using Plane = std::vector<std::complex<double>>;    // 512 x 512
-void fftw(Plane& plane, int sign) {
-    auto* data = reinterpret_cast<fftw_complex*>(plane.data());
-    const fftw_plan plan = fftw_plan_dft_2d(glare_n, glare_n, data, data, sign, FFTW_ESTIMATE);
-    fftw_execute(plan);
-    fftw_destroy_plan(plan);
 }
 
 TEST(Glare, TransformIsThatOfFftw) {
@@ -318,14 +268,6 @@ TEST(Glare, StructureFactorIsTheSumOverTheParticles) {
 
 // --- the law of the slot ---
 
-double energy(const ImageF& image, const EyeGeometry& g, int channel) {
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            if (geometry::geometry_visible(g, {x + 0.5, y + 0.5})) sum += static_cast<double>(image.at(x, y, channel)) * geometry::geometry_solid_angle(g, {x + 0.5, y + 0.5});
-    return sum;
-}
-
 TEST(Glare, UniformFieldIsUnchanged) {
     double worst = 0;
     for (const EyeGeometry& g : {native(), wide(), vive_lens(288, 320)}) {
@@ -500,30 +442,6 @@ TEST(Glare, SphereHasNoSeam) {
 
 // --- the formula: what a lamp's veil is, in light per illuminance ---
 
-// Mean veil around a lamp of one pixel in the middle of a flat picture, per lx.
-struct Ring { double mean[3], deviation; };
-Ring ring_around(const ImageF& out, const EyeGeometry& g, int lx, int ly, double lamp, double deg) {
-    const double illuminance = lamp * geometry::geometry_solid_angle(g, {lx + 0.5, ly + 0.5});
-    const glm::dvec3 axis = geometry::geometry_direction(g, {lx + 0.5, ly + 0.5});
-    const glm::dvec3 right = glm::normalize(glm::cross(axis, glm::dvec3(0, 1, 0))), up = glm::cross(right, axis);
-    Ring ring{};
-    double squares = 0;
-    constexpr int n = 360;
-    for (int i = 0; i < n; ++i) {
-        const double phi = 2 * pi * i / n, theta = deg * degree;
-        const glm::dvec2 at = geometry::geometry_pixel(g, std::cos(theta) * axis + std::sin(theta) * (std::cos(phi) * right + std::sin(phi) * up)) - 0.5;
-        const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-        for (int c = 0; c < 3; ++c) {
-            const auto tap = [&](int dx, int dy) { return static_cast<double>(out.at(x + dx, y + dy, c)); };
-            const double v = glm::mix(glm::mix(tap(0, 0), tap(1, 0), at.x - x), glm::mix(tap(0, 1), tap(1, 1), at.x - x), at.y - y) / illuminance;
-            ring.mean[c] += v / n;
-            if (c == 1) squares += v * v / n;
-        }
-    }
-    ring.deviation = std::sqrt(std::max(squares - ring.mean[1] * ring.mean[1], 0.0)) / ring.mean[1];
-    return ring;
-}
-
 TEST(Glare, VeilOfALampIsThatOfTheTable) {
     // 361 pixels over 30 degrees; the lamp is one pixel in the middle, in the dark.
     const EyeGeometry g = rectilinear(361, 361, 30);
@@ -554,142 +472,27 @@ TEST(Glare, VeilOfALampIsThatOfTheTable) {
 
 // --- three comparisons ---
 
-// The GPU's algorithm in double, with FFTW: same grid, same tables, smooth halo, one view.
-class Twin {
-public:
-    Twin(const EyeGeometry& g, const LuidoltSpectralParams& p, double pupil_mm) : g_(g), p_(p), grid_(make_glare_grid(std::span(&g, 1), static_cast<double>(p.texel_px))) {
-        spectrum_ = make_spectrum(p);
-        halo_ = make_halo_table(p);
-        // Both built kernels, mixed as the GPU mixes them.
-        const double step = static_cast<double>(p.rebuild_mm), first = std::floor(pupil_mm / step) * step;
-        const double blend = (pupil_mm - first) / step;
-        near_kernel_ = [this, first, step, blend](double theta) { return glm::mix(value(theta, first), value(theta, first + step), blend); };
-        for (int c = 0; c < 3; ++c) {
-            const Plane a = kernel(c, first), b = kernel(c, first + step);
-            kernels_[c].resize(a.size());
-            for (std::size_t i = 0; i < a.size(); ++i) kernels_[c][i] = (1 - blend) * a[i] + blend * b[i];
-            fftw(kernels_[c], FFTW_FORWARD);
-            for (uint i = 0; i < glare_n * glare_n; ++i)
-                kernels_[c][i] *= glare::sharpening((i % glare_n) / 512.0, grid_.damping) * glare::sharpening((i / glare_n) / 512.0, grid_.damping);
-        }
-    }
-
-    ImageD apply(const ImageF& in, double adaptation) {
-        ImageD image = convert<double>(in), out = image;
-        ImageD ones(in.width, in.height, 1, 1.0);
-        for (int c = 0; c < 3; ++c) {
-            ImageD channel(in.width, in.height, 1);
-            for (int y = 0; y < in.height; ++y)
-                for (int x = 0; x < in.width; ++x) channel.at(x, y, 0) = image.at(x, y, c);
-            const ImageD arrives = veil(channel, c), leaves = veil(ones, c);
-            for (int y = 0; y < in.height; ++y)
-                for (int x = 0; x < in.width; ++x) out.at(x, y, c) += arrives.at(x, y, 0) - leaves.at(x, y, 0) * image.at(x, y, c);
-        }
-        add_near(image, out, static_cast<double>(p_.near_from) * adaptation);
-        return out;
-    }
-
-private:
-    glm::dvec3 value(double theta, double pupil_mm) const {
-        const double sine = std::sin(std::min(theta, pi / 2)), place = sine * (halo_table_size - 1), f = covered_share(p_, pupil_mm);
+// The engine's algorithm in double with this model's smooth kernel.
+ImageD in_double(const ImageF& picture, const EyeGeometry& g, const LuidoltSpectralParams& p, double adaptation, double pupil_mm) {
+    const SpectralTable spectrum = make_spectrum(p);
+    const std::vector<vec3> halo = make_halo_table(p);
+    const auto value = [&](double theta, double pupil) {
+        const double sine = std::sin(std::min(theta, pi / 2)), place = sine * (halo_table_size - 1), f = covered_share(p, pupil);
         const auto i = std::min<std::size_t>(static_cast<std::size_t>(place), halo_table_size - 2);
-        const glm::dvec3 halo = glm::mix(glm::dvec3(halo_[i]), glm::dvec3(halo_[i + 1]), place - static_cast<double>(i));
-        const glm::dvec3 tail = (1 - f) * glare::aperture_tail(pupil_mm * 1000, 1, sine) * glm::dvec3(spectrum_.mean_lambda_um);
-        return glm::max(f * halo + tail, glm::dvec3(0)) * glare::radius_share(theta, static_cast<double>(p_.radius_deg) * degree) *
-               static_cast<double>(p_.strength);
-    }
-    double near() const { return std::max(std::floor(static_cast<double>(p_.near_px)) * grid_.pixel_rad, 0.5 * grid_.pitch); }
-    Plane kernel(int c, double pupil_mm) const {
-        Plane plane(glare_n * glare_n);
-        for (int y = -256; y < 256; ++y)
-            for (int x = -256; x < 256; ++x) {
-                const int far = std::max(std::abs(x), std::abs(y)), n = far <= 4 ? 8 : far <= 16 ? 4 : far <= 64 ? 2 : 1;
-                double sum = 0;
-                for (int j = 0; j < n; ++j)
-                    for (int i = 0; i < n; ++i) {
-                        const double theta = std::hypot(x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5) * grid_.pitch;
-                        sum += value(theta, pupil_mm)[c] * (1 - glare::near_share(theta, near()));
-                    }
-                plane[static_cast<std::size_t>(((y + 512) % 512) * 512 + (x + 512) % 512)] = sum / (n * n);
-            }
-        return plane;
-    }
-    // Node n stands on pixel step (n - 1). Calls f(node, weight) for every node that the pixel shares light with.
-    template <class F> void for_nodes(int x, int y, F f) const {
-        const int step = static_cast<int>(grid_.step);
-        for (int j = y / step - 1; j <= y / step + 4; ++j)
-            for (int i = x / step - 1; i <= x / step + 4; ++i) {
-                const double w = glare::spline(static_cast<double>(x) / step - (i - 1)) * glare::spline(static_cast<double>(y) / step - (j - 1));
-                if (w > 0 && i >= 0 && j >= 0) f(static_cast<std::size_t>(j) * grid_.nodes_x + static_cast<std::size_t>(i), w);
-            }
-    }
-    // Pixels -> nodes -> texels, convolution, and back.
-    ImageD veil(const ImageD& image, int c) const {
-        std::vector<double> nodes(grid_.nodes_x * grid_.nodes_y);
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) {
-                const double light = image.at(x, y, 0) * geometry::geometry_solid_angle(g_, {x + 0.5, y + 0.5});
-                for_nodes(x, y, [&](std::size_t node, double w) { nodes[node] += w * light; });
-            }
-        Plane plane(glare_n * glare_n);
-        for (std::size_t t = 0; t < plane.size(); ++t)
-            for (uint e = grid_.splat_offsets[t]; e < grid_.splat_offsets[t + 1]; ++e)
-                plane[t] += static_cast<double>(grid_.splat_entries[e].weight) * nodes[grid_.splat_entries[e].node];
-        fftw(plane, FFTW_FORWARD);
-        for (std::size_t t = 0; t < plane.size(); ++t) plane[t] *= kernels_[c][t] / (512.0 * 512.0);
-        fftw(plane, FFTW_BACKWARD);
-        for (std::size_t n = 0; n < nodes.size(); ++n) {
-            const NodeTap& tap = grid_.node_taps[n];
-            const auto x = static_cast<uint>(tap.u + 0.5f), y = static_cast<uint>(tap.v + 0.5f);
-            const glm::dvec3 across = glare::spline_weights(static_cast<double>(tap.u) - x), down = glare::spline_weights(static_cast<double>(tap.v) - y);
-            nodes[n] = 0;
-            for (uint k = 0; k < 9; ++k)
-                nodes[n] += across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * plane[(y + k / 3 - 1) * glare_n + x + k % 3 - 1].real();
-        }
-        ImageD out(image.width, image.height, 1);
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) for_nodes(x, y, [&](std::size_t node, double w) { out.at(x, y, 0) += w * nodes[node]; });
-        return out;
-    }
-    void add_near(const ImageD& in, ImageD& out, double threshold) const {
-        for (int ty = 0; ty < in.height; ty += tile_height)
-            for (int tx = 0; tx < in.width; tx += tile_width) {
-                const glm::dvec2 middle = glm::min(glm::dvec2(tx + tile_width * 0.5, ty + tile_height * 0.5), glm::dvec2(in.width - 0.5, in.height - 0.5));
-                const auto towards = [&](double dx, double dy) { return geometry::geometry_direction(g_, middle + glm::dvec2(dx, dy)); };
-                const glm::dvec3 across = (towards(2, 0) - towards(-2, 0)) * 0.25, down = (towards(0, 2) - towards(0, -2)) * 0.25;
-                const int radius = static_cast<int>(std::clamp(std::ceil(near() / std::min(glm::length(across), glm::length(down))), 1.0, 12.0));
-                std::vector<glm::dvec3> weights;
-                for (int dy = -radius; dy <= radius; ++dy)
-                    for (int dx = -radius; dx <= radius; ++dx) {
-                        const int n = std::max(std::abs(dx), std::abs(dy)) <= 2 ? 8 : 3;
-                        glm::dvec3 sum{0};
-                        for (int j = 0; j < n && (dx || dy); ++j)
-                            for (int i = 0; i < n; ++i) {
-                                const double theta = glm::length((dx + (i + 0.5) / n - 0.5) * across + (dy + (j + 0.5) / n - 0.5) * down);
-                                sum += near_kernel_(theta) * glare::near_share(theta, near());
-                            }
-                        weights.push_back(sum * (glm::length(glm::cross(across, down)) / (n * n)));
-                    }
-                for (int y = ty; y < std::min<int>(ty + tile_height, in.height); ++y)
-                    for (int x = tx; x < std::min<int>(tx + tile_width, in.width); ++x)
-                        for (int dy = -radius; dy <= radius; ++dy)
-                            for (int dx = -radius; dx <= radius; ++dx) {
-                                if (x + dx < 0 || y + dy < 0 || x + dx >= in.width || y + dy >= in.height) continue;
-                                const glm::dvec3 w = weights[static_cast<std::size_t>((dy + radius) * (2 * radius + 1) + dx + radius)];
-                                for (int c = 0; c < 3; ++c)
-                                    out.at(x, y, c) += w[c] * (std::max(in.at(x + dx, y + dy, c) - threshold, 0.0) - std::max(in.at(x, y, c) - threshold, 0.0));
-                            }
-            }
-    }
-
-    EyeGeometry g_;
-    LuidoltSpectralParams p_;
-    GlareGrid grid_;
-    SpectralTable spectrum_;
-    std::vector<vec3> halo_;
-    std::function<glm::dvec3(double)> near_kernel_;
-    Plane kernels_[3];
-};
+        const glm::dvec3 scattered = glm::mix(glm::dvec3(halo[i]), glm::dvec3(halo[i + 1]), place - static_cast<double>(i));
+        const glm::dvec3 tail = (1 - f) * glare::aperture_tail(pupil * 1000, 1, sine) * glm::dvec3(spectrum.mean_lambda_um);
+        return glm::max(f * scattered + tail, glm::dvec3(0)) * glare::radius_share(theta, static_cast<double>(p.radius_deg) * degree) *
+               static_cast<double>(p.strength);
+    };
+    // Both built kernels, mixed as the GPU mixes them.
+    const double step = static_cast<double>(p.rebuild_mm), first = std::floor(pupil_mm / step) * step, blend = (pupil_mm - first) / step;
+    const GlareTwin::Kernel kernel = [&](double theta) { return glm::mix(value(theta, first), value(theta, first + step), blend); };
+    const GlareTwin twin(g, static_cast<double>(p.texel_px), static_cast<double>(p.near_px));
+    const ImageD image = convert<double>(picture);
+    ImageD bright = image;
+    for (double& v : bright.data) v = std::max(v - static_cast<double>(p.near_from) * adaptation, 0.0);
+    return plus(plus(image, twin.far(image, kernel, true, true)), twin.near(bright, kernel, true));
+}
 
 struct Scene { const char* what; EyeGeometry g; ImageF image; std::vector<std::string> settings; };
 std::vector<Scene> scenes() {
@@ -719,7 +522,7 @@ TEST(Glare, FloatDoubleAndReferenceAgree) {
         }
         constexpr float pupil = 3.7f;
         const ImageF gpu = Glare(scene.g, model(settings)).at(scene.image, pupil);
-        const ImageD twin = Twin(scene.g, p, static_cast<double>(pupil)).apply(scene.image, 1), exact = reference(scene.image, scene.g, p, 1, pupil);
+        const ImageD twin = in_double(scene.image, scene.g, p, 1, static_cast<double>(pupil)), exact = reference(scene.image, scene.g, p, 1, pupil);
         const ErrorSummary numeric = summary(relative_errors(gpu, twin, 1e-3)), formula = summary(relative_errors(twin, exact, 1e-3)),
                            display = summary(delta_e_itp(toned(gpu, 1), toned(exact, 1)));
         ledger(name, scene.what, "float against double max", numeric.max);

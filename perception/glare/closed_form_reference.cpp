@@ -1,0 +1,113 @@
+// closed_form in double from the papers, with none of the shader's code: see glare_reference.h. Of emission_spectra it knows nothing: coloured
+// light scatters as white light does.
+#include "perception/glare/closed_form_params.h"
+#include "perception/glare/glare.h"
+#include "perception/glare/glare_reference.h"
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+namespace entoptic::perception {
+namespace {
+
+using namespace glare_reference;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double degree = pi / 180;
+
+double smooth(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+double luminance(const Rgb& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+
+struct Eye {
+    double age, pigment, factor;
+};
+
+// An eye's kernel, per sr and of strength 1, at theta over angle_scale.
+class EyeKernel {
+public:
+    EyeKernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm) : p_(p), eye_(eye), pupil_mm_(pupil_mm), waves_(white_spectrum()) {
+        covered_ = 1 - std::exp(-static_cast<double>(p.particles_per_mm2) * pi / 4 * std::pow(static_cast<double>(p.particle_diameter_um) * 1e-3, 2));
+        for (const Wave& w : waves_)
+            for (std::size_t c = 0; c < 3; ++c)
+                colour_[c] += w.weight[c] * (1 + static_cast<double>(p.straylight_colour) * (1 - std::min(eye.pigment / 1.2, 1.0)) * (std::pow(575 / w.nm, 4) - 1));
+        const double norm = luminance(colour_);
+        for (double& c : colour_) c /= norm;
+        // Beyond a degree, particles and a pupil of 4 mm take their light from the straylight.
+        const double waves = luminance(energy([&](double t) { return wave_optics(t, 4, false); }, degree, pi / 2));
+        left_ = std::max(1 - waves / energy([&](double t) { return Rgb{straylight(t)}; }, degree, pi)[0], 0.0);
+    }
+    Rgb operator()(double theta) const {
+        Rgb value = wave_optics(theta, pupil_mm_, true);
+        for (std::size_t c = 0; c < 3; ++c) value[c] += left_ * straylight(theta) * colour_[c];
+        return value;
+    }
+
+private:
+    // CIE 146-2002 from 0.1 to 100 degrees.
+    double straylight(double theta) const {
+        const double deg = std::clamp(theta / degree, 0.1, 100.0), a = 1 + std::pow(eye_.age / 62.5, 4);
+        const double veil = 10 / std::pow(deg, 3) + (5 / (deg * deg) + 0.1 * eye_.pigment / deg) * a + 0.0025 * eye_.pigment;
+        return veil * (1 + (eye_.factor - 1) * smooth(std::log10(deg / 0.1))) * smooth((110 - theta / degree) / 10);
+    }
+    Rgb wave_optics(double theta, double pupil_mm, bool lens) const {
+        const double inner = std::min(theta, pi / 2), fibres = std::clamp((pupil_mm - 1.9) / 3, 0.0, 1.0) * 0.033 * static_cast<double>(p_.lenticular_halo);
+        Rgb sum{};
+        for (const Wave& w : waves_) {
+            double value = (1 - covered_) * static_cast<double>(p_.diffraction) * aperture_ring(pupil_mm * 1e3, w.nm * 1e-3, inner, 0) +
+                           covered_ * disc(static_cast<double>(p_.particle_diameter_um), w.nm * 1e-3, inner);
+            if (lens) value += fibres * 436.9 * 568 / w.nm * std::exp(-19.75 * std::pow(theta / degree - 3 * w.nm / 568, 2));
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += w.weight[c] * value;
+        }
+        return sum;
+    }
+
+    ClosedFormParams p_;
+    Eye eye_;
+    double pupil_mm_, covered_ = 0, left_ = 1;
+    std::vector<Wave> waves_;
+    Rgb colour_{};
+};
+
+Kernel make_kernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm, double pixel_rad) {
+    const EyeKernel one(p, eye, pupil_mm);
+    const double scale = static_cast<double>(p.angle_scale);
+    const auto scaled = [&](double theta) {
+        Rgb value = one(theta / scale);
+        for (double& v : value) v *= static_cast<double>(p.strength) / (scale * scale);
+        return value;
+    };
+    const Rgb scattered = energy(scaled, 0.5 * pixel_rad, pi);
+    const double limit = std::min(1.0, 0.9 / std::max({scattered[0], scattered[1], scattered[2]}));
+    return Kernel([&](double theta) {
+        Rgb value = scaled(theta);
+        for (double& v : value) v *= limit;
+        return value;
+    });
+}
+
+class ClosedFormReference final : public ReferenceModel {
+public:
+    void apply(ReferenceFrame& frame, std::span<const float> parameters) override {
+        ClosedFormParams p;
+        std::memcpy(&p, parameters.data(), sizeof p);
+        const Eye person{static_cast<double>(p.age), static_cast<double>(p.pigment), static_cast<double>(p.straylight_factor)};
+        const Eye wearer{p.wearer_age > 0 ? static_cast<double>(p.wearer_age) : person.age, p.wearer_pigment >= 0 ? static_cast<double>(p.wearer_pigment) : person.pigment,
+                         p.wearer_straylight_factor > 0 ? static_cast<double>(p.wearer_straylight_factor) : person.factor};
+        const bool differ = person.age != wearer.age || person.pigment != wearer.pigment || person.factor != wearer.factor;
+        const Scatter scatter(frame.geometry);
+        const double pupil_mm = static_cast<double>(frame.eye.pupil_diameter_mm);
+        const Kernel of_person = make_kernel(p, person, pupil_mm, scatter.smallest_step());
+        const Kernel of_wearer = differ ? make_kernel(p, wearer, pupil_mm, scatter.smallest_step()) : of_person;
+        frame.image = seen(frame.image, scatter, of_person, of_wearer, differ, frame.scene_white_cd_m2, static_cast<double>(p.rescatter), p.photographic > 0.5f);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<ReferenceModel> make_closed_form_reference() { return std::make_unique<ClosedFormReference>(); }
+
+}  // namespace entoptic::perception
