@@ -59,7 +59,8 @@ TEST_F(Simulate, EyesFocusOnTheDistanceInChannelZ) {
         }
     const std::string in = picture("a.exr", scene, 1.0f, depth);
     const auto contrast = [&](const std::string& gaze, int from, const std::vector<std::string>& more) {
-        std::vector<std::string> call{"simulate", in, "-o", path("out.exr"), "--fov", "7", "--preset", "off", "--model", "dof=dioptric_disc", "--gaze", gaze, "--pupil", "5"};
+        std::vector<std::string> call{"simulate", in,      "-o",      path("out.exr"),     "--fov",  "7",  "--preset",
+                                      "off",      "--model", "dof=dioptric_disc", "--gaze", gaze, "--pupil", "5"};
         call.insert(call.end(), more.begin(), more.end());
         const auto outcome = entoptic(call);
         EXPECT_EQ(outcome.status, 0) << outcome.err;
