@@ -18,6 +18,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& application, Action&
 void add_simulate(CLI::App& app, Action& action);
 void add_stimulus(CLI::App& app, Action& action);
 void add_effects(CLI::App& app, Action& action);
+void add_curve(CLI::App& app, Action& action);
 void add_status(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_config(CLI::App& app, Action& action);
