@@ -47,16 +47,16 @@ shot() {
 }
 
 say "Running the office on the virtual headset (2 x $panel, $frames frames a run)"
-for preset in off combined; do
+for preset in off combined luidolt2020; do
     shot day "$preset" --light day --lamp off
     shot dusk "$preset" --light dusk --lamp off
     shot starlight "$preset" --light starlight --lamp off
     shot lamp "$preset" --light night --lamp on
 done
 
-say "Pictures: the left eye's view through the lens, before (off) and after (combined)"
+say "Pictures: the left eye's view through the lens, before (off), as a wearer is shown it (combined), and a paper's picture (luidolt2020)"
 for name in day dusk starlight lamp; do
-    printf '  %s  %s\n' "$output/office_${name}_off.png" "$output/office_${name}_combined.png"
+    printf '  %s  %s  %s\n' "$output/office_${name}_off.png" "$output/office_${name}_combined.png" "$output/office_${name}_luidolt2020.png"
 done
 printf '  What the panel itself shows: %s\n' "$output/office_*_panel.png"
 say "Report: $output/lamp_combined.json"
