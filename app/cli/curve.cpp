@@ -168,7 +168,7 @@ std::string all_curves() {
         own.insert(own.end(), settings.begin(), settings.end());
         text += fmt::format("  {}: {}, {} -> {}, {}\n      model: {}\n", kind.name, kind.x_name, kind.x_unit, kind.y_name, kind.y_unit, fmt::join(models, ", "));
         if (!own.empty()) text += fmt::format("      {}\n", fmt::join(own, ", "));
-        if (kind.parts.size() > 1) text += fmt::format("      columns gpu{0}, double{0}, reference{0} for {1}\n", "_?", fmt::join(kind.parts, ", "));
+        if (kind.parts.size() > 1) text += fmt::format("      columns gpu{}, and so on for double and reference\n", fmt::join(kind.parts, ", gpu"));
     }
     return text;
 }

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Curve> make_table() {
     std::vector<Curve> all;
-    for (auto* make : {&pupil_curves, &adaptation_curves, &tone_curves, &acuity_curves, &mesopic_curves, &afterimage_curves, &dof_curves,
+    for (auto* make : {&pupil_curves, &adaptation_curves, &tone_curves, &glare_curves, &acuity_curves, &mesopic_curves, &afterimage_curves, &dof_curves,
                        &foveation_curves})
         for (Curve& curve : make()) all.push_back(std::move(curve));
     return all;

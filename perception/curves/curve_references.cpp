@@ -36,6 +36,12 @@ double pupil_diameter(const CurveInput& in, double cd_m2) {
     return std::clamp(young + (age - 28.58) * slope, 1.5, 9.0);
 }
 
+// The wearer's pupil, that of the formula at 20 cd/m², and what the scene adds to it: the formula at the scene's light, within limits.
+double residual_pupil(const CurveInput& in, double cd_m2) {
+    const double panel = pupil_diameter(in, 20), change = pupil_diameter(in, cd_m2) - panel;
+    return std::clamp(panel + change, std::min(parameter(in, 1), panel), std::max(parameter(in, 2), panel));
+}
+
 // Luidolt 2020, equation 2, by the C library's expm1.
 double krawczyk_exp_linear_step(const CurveInput& in, double t_s) {
     const double from = in.own[0], to = in.own[1], tau = time_constant(to, parameter(in, 2), parameter(in, 3));
@@ -108,6 +114,37 @@ double luidolt_eq12_sigma(const CurveInput& in, double cd_m2) { return 60 / 13.8
 double luidolt_eq12_cutoff(const CurveInput& in, double cd_m2) {
     const double sigma_deg = luidolt_eq12_sigma(in, cd_m2) / 60;
     return sigma_deg > 0 ? std::min(1 / (1.86 * std::sqrt(2) * sigma_deg), 6.925) : 6.925;
+}
+
+// Larson 1997, as equation 11 of Luidolt 2020 has it.
+double larson_cutoff_cpd(const CurveInput&, double cd_m2) { return 17.25 * std::atan(1.4 * std::log10(std::max(cd_m2, 1e-8)) + 0.35) + 25.72; }
+// Variances add: the scene's eye's less the wearer's less that of the pixel's box.
+double larson_sigma(const CurveInput& in, double cd_m2) {
+    const auto variance = [&](double y) { return std::pow(60 / (1.86 * std::sqrt(2) * larson_cutoff_cpd(in, y)), 2); };
+    const double missing = variance(cd_m2) - (in.own[0] > 0 ? variance(in.own[0]) : 0) - (in.own[1] > 0 ? std::pow(60 / in.own[1], 2) / 12 : 0);
+    return parameter(in, 0) * std::sqrt(std::max(missing, 0.0));
+}
+
+namespace {
+
+// Jacobs 2015, appendix A: Gaussians of 0.75·2^(i/4) pixels at 65.5 pixels per degree; 18 thresholds, evenly over the mesopic range.
+double jacobs_bands_variance(const CurveInput& in, double y) {
+    constexpr double upper[] = {5, 1, 10}, lower[] = {0.005, 0.01, 0.001};
+    const auto range = static_cast<std::size_t>(std::lround(parameter(in, 2)));
+    const double passed = 18 * std::log(upper[range] / std::max(y, 1e-8)) / std::log(upper[range] / lower[range]);
+    const double sigma = 0.75 * 60 / 65.5146 * std::pow(2, std::clamp(passed - 1, 0.0, 17.0) / 4);
+    return sigma * sigma * std::clamp(passed, 0.0, 1.0);
+}
+
+}  // namespace
+
+double jacobs_bands_cutoff(const CurveInput& in, double cd_m2) {
+    const double sigma_deg = std::sqrt(jacobs_bands_variance(in, cd_m2)) / 60;
+    return sigma_deg > 0 ? std::min(1 / (1.86 * std::sqrt(2) * sigma_deg), 32.75) : 32.75;
+}
+double jacobs_bands_sigma(const CurveInput& in, double cd_m2) {
+    const double wearer = in.own[0] > 0 ? jacobs_bands_variance(in, in.own[0]) : 0;
+    return parameter(in, 0) * std::sqrt(std::max(jacobs_bands_variance(in, cd_m2) - wearer, 0.0));
 }
 
 // Luidolt 2020, equation 4: 1 - s = Y/(0.04 + Y).

@@ -19,6 +19,7 @@ template <auto f> std::vector<double> each(const CurveInput& input, std::span<co
 std::vector<Curve> pupil_curves();
 std::vector<Curve> adaptation_curves();
 std::vector<Curve> tone_curves();
+std::vector<Curve> glare_curves();
 std::vector<Curve> acuity_curves();
 std::vector<Curve> mesopic_curves();
 std::vector<Curve> afterimage_curves();

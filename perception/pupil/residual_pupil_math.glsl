@@ -6,11 +6,14 @@
 #include "perception/pupil/watson_yellott_math.glsl"
 
 ENTOPTIC_MATH_BEGIN(perception::residual_pupil)
+#ifdef __cplusplus
+using namespace entoptic::perception::watson_yellott;
+#endif
 
 // By how much the scene's light opens a pupil of this age more than the panel's, mm (Watson and Yellott 2012). Exactly 0 for equal light.
 FN real opening_mm(ResidualPupilParams p, real scene_cd_m2, real displayed_cd_m2, real area_deg2) {
     if (scene_cd_m2 == displayed_cd_m2) return LIT(0.0);
-    return watson_yellott::diameter_mm(scene_cd_m2 * area_deg2, real(p.age)) - watson_yellott::diameter_mm(displayed_cd_m2 * area_deg2, real(p.age));
+    return diameter_mm(scene_cd_m2 * area_deg2, real(p.age)) - diameter_mm(displayed_cd_m2 * area_deg2, real(p.age));
 }
 
 // A pupil constricts faster than it dilates.
