@@ -233,6 +233,18 @@ ImageF read_luminance_chroma(Imf::InputFile& file, const Imath::Box2i& window) {
     return rgb;
 }
 
+// Z, where it is a distance beside a colour: with X and Y, it is a colour itself.
+ImageF read_depth(Imf::InputFile& file, const Imath::Box2i& window) {
+    const Imf::ChannelList& channels = file.header().channels();
+    if (!channels.findChannel("Z") || channels.findChannel("X") || !full_size(channels, {"Z"})) return {};
+    std::vector<Plane> planes;
+    const ImageF size = read_planes(file, window, {"Z"}, planes);
+    ImageF depth(size.width, size.height, 1);
+    for (int y = 0; y < depth.height; ++y)
+        for (int x = 0; x < depth.width; ++x) depth.at(x, y, 0) = planes[0].at(x, y);
+    return depth;
+}
+
 Result<ImageF> read_channels(Imf::InputFile& file, const Imath::Box2i& window, const std::string& path) {
     const Imf::ChannelList& channels = file.header().channels();
     const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
@@ -265,11 +277,12 @@ void to_bt709(ImageF& rgb, const Imf::Chromaticities& from) {
 // The display window is the picture; where there are no data it is black.
 ImageF place(ImageF&& data, const Imath::Box2i& window, const Imath::Box2i& display) {
     if (window == display) return std::move(data);
-    ImageF out(display.max.x - display.min.x + 1, display.max.y - display.min.y + 1, 3);
+    const int channels = data.channels;
+    ImageF out(display.max.x - display.min.x + 1, display.max.y - display.min.y + 1, channels);
     const int left = std::max(window.min.x, display.min.x), right = std::min(window.max.x, display.max.x);
     if (left > right) return out;
     for (int y = std::max(window.min.y, display.min.y); y <= std::min(window.max.y, display.max.y); ++y)
-        std::copy_n(&data.at(left - window.min.x, y - window.min.y, 0), 3 * (right - left + 1),
+        std::copy_n(&data.at(left - window.min.x, y - window.min.y, 0), channels * (right - left + 1),
                     &out.at(left - display.min.x, y - display.min.y, 0));
     return out;
 }
@@ -287,6 +300,8 @@ Result<ExrImage> read_checked(const std::string& path, const HeaderSizes& sizes)
     to_bt709(rgb, chromaticities_of(file.header()));
     ExrImage image;
     image.rgb = place(std::move(rgb), sizes.data_window, sizes.display_window);
+    if (ImageF depth = read_depth(file, sizes.data_window); !depth.data.empty())
+        image.depth = place(std::move(depth), sizes.data_window, sizes.display_window);
     read_attributes(file.header(), image);
     return image;
 }
@@ -295,7 +310,7 @@ Error cannot_write(const std::string& path, const std::string& why) {
     return {ErrorKind::failed, fmt::format("Cannot write '{}': {}. Check that the folder exists, may be written and has room.", path, why)};
 }
 
-void write_exr_file(const std::string& path, const ImageF& image, const ExrAttributes& attributes) {
+void write_exr_file(const std::string& path, const ImageF& image, const ExrAttributes& attributes, const ImageF& depth) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     if (attributes.white_luminance) Imf::addWhiteLuminance(header, *attributes.white_luminance);
@@ -308,6 +323,11 @@ void write_exr_file(const std::string& path, const ImageF& image, const ExrAttri
         header.channels().insert(names[std::size_t(c)], Imf::Channel(Imf::FLOAT));
         char* base = reinterpret_cast<char*>(const_cast<float*>(image.data.data() + c));
         frame.insert(names[std::size_t(c)], Imf::Slice(Imf::FLOAT, base, pixel, pixel * std::size_t(image.width)));
+    }
+    if (!depth.data.empty()) {
+        header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+        char* base = reinterpret_cast<char*>(const_cast<float*>(depth.data.data()));
+        frame.insert("Z", Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * std::size_t(depth.width)));
     }
     Imf::OutputFile file(path.c_str(), header, 1);
     file.setFrameBuffer(frame);
@@ -348,12 +368,14 @@ Result<ExrImage> read_exr(const std::string& path) {
     }
 }
 
-Result<void> write_exr(const std::string& path, const ImageF& image, const ExrAttributes& attributes) {
+Result<void> write_exr(const std::string& path, const ImageF& image, const ExrAttributes& attributes, const ImageF& depth) {
     if (!whole(image) || (image.channels != 1 && image.channels != 3))
         return forward_error(
             cannot_write(path, fmt::format("an image of {} x {} with {} channels", image.width, image.height, image.channels)));
+    if (!depth.data.empty() && (!whole(depth) || depth.channels != 1 || depth.width != image.width || depth.height != image.height))
+        return forward_error(cannot_write(path, "a depth of another size than its picture"));
     try {
-        write_exr_file(path, image, attributes);
+        write_exr_file(path, image, attributes, depth);
         return {};
     } catch (const std::exception& e) { return forward_error(cannot_write(path, e.what())); }
 }

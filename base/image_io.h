@@ -15,6 +15,7 @@ constexpr std::int64_t max_image_pixels = 200'000'000;
 
 struct ExrImage {
     ImageF rgb;                              // linear, 3 channels, as stored (may hold NaN, infinities, negatives)
+    ImageF depth;                            // channel Z beside R, G, B, as stored; empty when there is none or it is subsampled
     std::optional<float> white_luminance;    // attribute whiteLuminance: cd/m² of RGB (1,1,1)
     std::map<std::string, std::string> text; // string attributes
 };
@@ -29,8 +30,8 @@ struct ExrAttributes {
     std::map<std::string, float> numbers;       // written as float attributes
 };
 
-// 1 or 3 channels (Y or RGB), 32-bit float, ZIP compressed.
-Result<void> write_exr(const std::string& path, const ImageF& image, const ExrAttributes& attributes = {});
+// 1 or 3 channels (Y or RGB), 32-bit float, ZIP compressed; with `depth` (1 channel, same size) also Z.
+Result<void> write_exr(const std::string& path, const ImageF& image, const ExrAttributes& attributes = {}, const ImageF& depth = {});
 
 // 8-bit, 1, 3 or 4 channels.
 Result<void> write_png(const std::string& path, const Image8& image);

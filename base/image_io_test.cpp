@@ -105,6 +105,19 @@ TEST_F(ImageIo, FloatSurvivesToTheBitWithItsAttributes) {
     EXPECT_EQ(back->text.at("who"), "me");
 }
 
+TEST_F(ImageIo, DistanceStandsBesideTheColour) {
+    ImageF depth(5, 3, 1, 2.5f);
+    depth.at(4, 2, 0) = std::numeric_limits<float>::infinity();
+    ASSERT_TRUE(write_exr(path("z.exr"), colours(5, 3), {}, depth));
+    const auto back = read_exr(path("z.exr"));
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->depth.data, depth.data);
+    EXPECT_EQ(back->rgb.data, colours(5, 3).data);
+    EXPECT_FALSE(write_exr(path("z.exr"), colours(4, 3), {}, depth)) << "of another size";
+    ASSERT_TRUE(write_exr(path("a.exr"), colours(4, 4)));
+    EXPECT_TRUE(read_exr(path("a.exr"))->depth.data.empty());
+}
+
 TEST_F(ImageIo, WithoutWhiteLuminanceThereIsNone) {
     ASSERT_TRUE(write_exr(path("a.exr"), colours(4, 4)));
     EXPECT_FALSE(read_exr(path("a.exr"))->white_luminance);

@@ -13,7 +13,7 @@ namespace {
 constexpr double longest_step_s = 2;  // of adaptation; a longer gap is a new beginning
 constexpr float dither_amplitude = 0.98f;
 
-VkImageMemoryBarrier ownership_transfer(VkImage image, std::uint32_t family, bool acquire) {
+VkImageMemoryBarrier ownership_transfer(VkImage image, VkImageAspectFlags aspects, std::uint32_t family, bool acquire) {
     VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
     barrier.srcAccessMask = 0;
     barrier.dstAccessMask = acquire ? VK_ACCESS_SHADER_READ_BIT : 0;
@@ -21,7 +21,7 @@ VkImageMemoryBarrier ownership_transfer(VkImage image, std::uint32_t family, boo
     barrier.srcQueueFamilyIndex = acquire ? VK_QUEUE_FAMILY_EXTERNAL : family;
     barrier.dstQueueFamilyIndex = acquire ? family : VK_QUEUE_FAMILY_EXTERNAL;
     barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    barrier.subresourceRange = {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
     return barrier;
 }
 
@@ -44,6 +44,17 @@ void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs displ
         frame.head_from_eye[eye] = headset.eyes[eye].head_from_eye;
         input.eyes[eye] = {frame.head_from_eye[eye].inverse().rotate(state.gaze_direction), state.pupil_diameter_mm, state.eyelid_open};
     }
+    input.vergence_dioptre = vergence_dioptre(frame.observer, frame.head_from_eye);
+}
+
+float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye) {
+    const auto& [left, right] = observer.eyes;
+    const float apart_m = head_from_eye[1].position.x - head_from_eye[0].position.x;
+    if (left.gaze_provenance != Provenance::measured || right.gaze_provenance != Provenance::measured || !(apart_m > 0)) return -1;
+    const auto tangent = [](const glm::vec3& gaze) { return gaze.x / -gaze.z; };
+    const float dioptre = (tangent(left.gaze_direction) - tangent(right.gaze_direction)) / apart_m;
+    if (!(left.gaze_direction.z < 0 && right.gaze_direction.z < 0)) return -1;
+    return std::clamp(dioptre, 0.0f, max_dioptre);
 }
 
 // Wall-clock times of the CPU's part of each stage.
@@ -108,9 +119,11 @@ Result<void> FramePath::ensure_stages() {
     stage.seed = options_.seed;
     stage.repeatable = options_.repeatable;
     ENTOPTIC_TRY(warp, WarpPass::create(device_, eye_geometry_));
+    ENTOPTIC_TRY(glance, GlancePass::create(device_, eye_geometry_));
     ENTOPTIC_TRY(lens, LensPass::create(device_, panel_geometry_, eye_size_, options_.lens_filter));
     ENTOPTIC_TRY(made, perception::Stage::create(device_, stage));
     warp_ = std::move(warp);
+    glance_ = std::move(glance);
     lens_ = std::move(lens);
     stage_ = std::move(made);
     return {};
@@ -122,8 +135,9 @@ Result<void> FramePath::select(const perception::Selection& selection) {
     return selection.choices.empty() ? Result<void>{} : ensure_stages();
 }
 
-std::string FramePath::collect(const FrameDescription& frame, const ImageUse& images) {
+std::string FramePath::collect(const FrameDescription& frame, const ImageUse& images, bool with_depth) {
     layers_.clear();
+    if (depth_) depth_->clear();
     std::string problem;
     for (int eye = 0; eye < eye_count; ++eye) {
         const EyePlace place{frame.world_from_head, frame.head_from_eye[std::size_t(eye)]};
@@ -135,17 +149,38 @@ std::string FramePath::collect(const FrameDescription& frame, const ImageUse& im
                 problem = image.error().message;
                 continue;
             }
-            if (const auto view = layer_view(layer, eye, place, panel_geometry_[std::size_t(eye)], image->is_float))
-                layers_.add(eye, *view, *image);
+            const auto view = layer_view(layer, eye, place, panel_geometry_[std::size_t(eye)], image->is_float);
+            if (!view) continue;
+            layers_.add(eye, *view, *image);
+            if (!with_depth) continue;
+            if (const auto added = collect_depth(layer, eye, place, images, *image); !added) problem = added.error().message;
         }
     }
     layers_.upload();
     return problem;
 }
 
+Result<void> FramePath::collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour) {
+    auto depth = depth_layer(layer, eye, place, panel_geometry_[std::size_t(eye)]);
+    if (!depth) return {};
+    if ((depth->flags & depth_sampled) == 0) {
+        depth_->add(eye, *depth, colour, nullptr);
+        return {};
+    }
+    const auto image = images.find_depth(layer.views[std::size_t(eye)].depth.image);
+    if (!image) depth->flags &= ~(depth_known | depth_sampled);
+    depth_->add(eye, *depth, colour, image ? &*image : nullptr);
+    return image ? Result<void>{} : Result<void>(forward_error(image.error()));
+}
+
 void FramePath::transfer_images(bool acquire) {
     std::vector<VkImageMemoryBarrier> barriers;
-    for (VkImage image : layers_.images()) barriers.push_back(ownership_transfer(image, device_.queue_family(), acquire));
+    const auto transfer = [&](VkImage image, VkImageAspectFlags aspects) {
+        barriers.push_back(ownership_transfer(image, aspects, device_.queue_family(), acquire));
+    };
+    for (VkImage image : layers_.images()) transfer(image, VK_IMAGE_ASPECT_COLOR_BIT);
+    if (depth_)
+        for (const SampledImage& image : depth_->images()) transfer(image.image, image.aspects);
     if (barriers.empty()) return;
     const VkPipelineStageFlags outside = acquire ? VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT : VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
     const VkPipelineStageFlags ours = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
@@ -157,20 +192,29 @@ PanelCurve FramePath::curve(const FrameDescription& frame) const {
     const perception::DisplayRange& display = options_.display;
     // 8-bit codes that nothing changes go to the panel as they came. Noise below half a code would leave them alone only if the device's
     // sRGB decoding were better than Vulkan asks: lavapipe 22.3 is off by up to 0.34 of a code (2.5 % of the light, codes below 16).
-    const bool codes_pass = options_.selection.choices.empty() && layers_.only_srgb8();
+    const bool codes_pass = layers_.only_srgb8() && (options_.selection.choices.empty() || is_ordinary());
     return {display.black_cd_m2, 1.0f / (display.white_cd_m2 - display.black_cd_m2),
             options_.dither && !codes_pass ? dither_amplitude : 0.0f, static_cast<std::uint32_t>(frame.index)};
 }
 
+bool FramePath::is_ordinary() const { return stage_ && stage_->obeys_residual_law() && stage_->at_rest() && layers_.within(options_.display); }
+
 Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const ImageUse& images, const WantedPictures& wanted) {
     CpuTimes times(options_.stopwatch);
     FrameOutcome outcome;
-    outcome.problem = collect(frame, images);
+    const bool simulates = !options_.selection.choices.empty();
+    if (simulates || !options_.fuse || wanted.needs_stages()) ENTOPTIC_CHECK(ensure_stages());
+    const bool with_depth = simulates && stage_->wants_depth();
+    if (with_depth && !depth_) {
+        ENTOPTIC_TRY(depth, DepthPass::create(device_, eye_geometry_));
+        depth_ = std::move(depth);
+    }
+    outcome.problem = collect(frame, images, with_depth);
     times.stage_ended("collect");
-    outcome.fused = options_.fuse && options_.selection.choices.empty() && !wanted.needs_stages();
-    if (!outcome.fused) ENTOPTIC_CHECK(ensure_stages());
+    outcome.ordinary = simulates && is_ordinary();
+    outcome.fused = options_.fuse && (!simulates || outcome.ordinary) && !wanted.needs_stages();
     ENTOPTIC_CHECK(commands_.begin());
-    if (auto recorded = record(frame, wanted, outcome.fused, times); !recorded) {
+    if (auto recorded = record(frame, wanted, outcome, times); !recorded) {
         vkEndCommandBuffer(commands_.handle());  // so that the next frame can begin
         return forward_error(std::move(recorded.error()));
     }
@@ -182,23 +226,24 @@ Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const Ima
     if (outcome.fused) {
         const auto cleaned = fused_.cleaned();
         for (std::size_t eye = 0; eye < eye_count; ++eye) outcome.views[eye].cleaned = cleaned[eye];
-        return outcome;
+        if (!outcome.ordinary) return outcome;
     }
     stage_->accumulate_totals();
     outcome.effects = stage_->effects();
-    for (std::uint32_t eye = 0; eye < eye_count; ++eye) outcome.views[eye] = stage_->view(eye);
+    for (std::uint32_t eye = 0; eye < eye_count; ++eye) {
+        const std::uint32_t cleaned = outcome.views[eye].cleaned;
+        outcome.views[eye] = stage_->view(eye);
+        outcome.views[eye].cleaned += cleaned;
+    }
     return outcome;
 }
 
-Result<void> FramePath::record(const FrameDescription& frame, const WantedPictures& wanted, bool fused, CpuTimes& times) {
+Result<void> FramePath::record(const FrameDescription& frame, const WantedPictures& wanted, const FrameOutcome& path, CpuTimes& times) {
     for (Download* download : {&warp_download_, &perceive_download_, &lens_download_, &panel_download_, &seen_download_})
         download->filled = false;
     transfer_images(true);
-    if (fused) {
-        commands_.begin_stage("fused");
-        ENTOPTIC_CHECK(fused_.record(commands_, layers_, curve(frame), panel()));
-        commands_.end_stage();
-        times.stage_ended("fused");
+    if (path.fused) {
+        ENTOPTIC_CHECK(record_fused(frame, path.ordinary, times));
     } else {
         ENTOPTIC_CHECK(record_stages(frame, wanted, times));
     }
@@ -212,9 +257,26 @@ Result<void> FramePath::record(const FrameDescription& frame, const WantedPictur
     return {};
 }
 
+Result<void> FramePath::record_fused(const FrameDescription& frame, bool ordinary, CpuTimes& times) {
+    if (ordinary) {
+        commands_.begin_stage("glance");
+        ENTOPTIC_CHECK(glance_->record(commands_, layers_, *stage_));
+        commands_.end_stage();
+        commands_.barrier();
+        stage_->record_at_rest(commands_, frame.perception);
+        times.stage_ended("glance");
+    }
+    commands_.begin_stage("fused");
+    ENTOPTIC_CHECK(fused_.record(commands_, layers_, curve(frame), panel()));
+    commands_.end_stage();
+    times.stage_ended("fused");
+    return {};
+}
+
 Result<void> FramePath::record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times) {
     commands_.begin_stage("warp");
     ENTOPTIC_TRY(scene, warp_->record(commands_, layers_, *stage_));
+    if (depth_ && stage_->wants_depth()) depth_->record(commands_, *stage_);
     commands_.end_stage();
     commands_.barrier();
     if (wanted.warp) {
@@ -222,7 +284,9 @@ Result<void> FramePath::record_stages(const FrameDescription& frame, const Wante
         commands_.barrier();
     }
     times.stage_ended("warp");
-    stage_->record(commands_, frame.perception);
+    perception::FrameInput input = frame.perception;
+    input.within_display = layers_.within(options_.display);
+    stage_->record(commands_, input);
     const SeenImage seen{scene.pixels, scene.size};
     if (wanted.perceive) ENTOPTIC_CHECK(download(*seen.pixels, perceive_download_, "perceive"));
     times.stage_ended("perceive");

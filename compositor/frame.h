@@ -2,6 +2,8 @@
 // predict, warp, perceive, lens, panel and present; these are also the labels of its times and the names of its dumps.
 #pragma once
 
+#include "compositor/depth_pass.h"
+#include "compositor/layer_views.h"
 #include "compositor/passes.h"
 #include "interfaces/headset.h"
 #include "interfaces/layers.h"
@@ -38,6 +40,9 @@ struct FrameDescription {
 // composition before, 0 for none: FrameInput::snap after more than 2 s.
 void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs display_time, TimeNs last_display_time);
 
+// Where both lines of sight meet, 1/m in front of the eyes; 0 where they do not; negative unless both eyes' gaze was measured.
+float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye);
+
 struct FramePathOptions {
     PictureSize panel;     // of one eye, pixels
     double eye_scale = 1;  // size of the eye image over the panel's, 0.05..2
@@ -67,6 +72,7 @@ struct StageMs {
 // What became of a frame.
 struct FrameOutcome {
     bool fused = false;
+    bool ordinary = false;  // models were chosen, but all light was known to be within the panel's range: nothing to simulate
     std::vector<StageMs> gpu_ms, cpu_ms;  // by stage, in order
     std::vector<perception::EffectOutcome> effects;
     std::array<perception::ViewOutcome, eye_count> views;  // zeroes where nothing was simulated, but for `cleaned`
@@ -109,12 +115,16 @@ private:
 
     Result<void> allocate();
     Result<void> ensure_stages();
-    std::string collect(const FrameDescription& frame, const ImageUse& images);
+    std::string collect(const FrameDescription& frame, const ImageUse& images, bool with_depth);
+    Result<void> collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour);
     void transfer_images(bool acquire);
-    Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, bool fused, CpuTimes& times);
+    Result<void> record(const FrameDescription& frame, const WantedPictures& wanted, const FrameOutcome& path, CpuTimes& times);
+    Result<void> record_fused(const FrameDescription& frame, bool ordinary, CpuTimes& times);
     Result<void> record_stages(const FrameDescription& frame, const WantedPictures& wanted, CpuTimes& times);
     Result<void> download(const gpu::Buffer& from, Download& into, const char* name);
     PanelCurve curve(const FrameDescription& frame) const;
+    // The frame's light is within the panel's range, and no state of the eye changes how it is seen.
+    bool is_ordinary() const;
     ImageF eye_picture(const Download& download, int eye) const;
     Image8 code_picture(const Download& download, PictureSize size, int eye) const;
 
@@ -128,6 +138,8 @@ private:
     FusedPass fused_;
     std::unique_ptr<perception::Stage> stage_;
     std::optional<WarpPass> warp_;
+    std::optional<GlancePass> glance_;
+    std::optional<DepthPass> depth_;  // made when a model first wants depth
     std::optional<LensPass> lens_;
     std::optional<SeenThroughLensPass> seen_;
     Download warp_download_, perceive_download_, lens_download_, panel_download_, seen_download_;

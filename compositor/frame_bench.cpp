@@ -1,4 +1,4 @@
-// CPU time of a frame with nothing simulated: warp, lens and panel in one pass, at 2 × 640×720 (1280×720 in all), through the Vive Pro's
+// CPU time of a frame of which nothing is simulated: warp, lens and panel in one pass or one after another, with preset off or `combined`, at 2 × 640×720 (1280×720 in all), through the Vive Pro's
 // lens, from layers of 896×1007 an eye (Monado's view size at that output, facts/peers.md).
 #include "compositor/testing/frame_harness.h"
 
@@ -19,7 +19,7 @@ double process_cpu_s() {
 
 Codes gradient(int x, int y) { return {std::uint8_t(x), std::uint8_t(y), std::uint8_t(x ^ y), 200}; }
 
-void compose(benchmark::State& state, bool fuse, int quads, LensFilter filter = LensFilter::catmull_rom) {
+void compose(benchmark::State& state, bool fuse, int quads, LensFilter filter = LensFilter::catmull_rom, const char* preset = "off") {
     auto& device = test_device();
     SwapchainPool pool(device);
     FramePathOptions options;
@@ -27,6 +27,7 @@ void compose(benchmark::State& state, bool fuse, int quads, LensFilter filter = 
     options.eyes = vive_pro_eyes();
     options.fuse = fuse;
     options.lens_filter = filter;
+    options.selection = must(perception::select(preset));
     const auto path = must(FramePath::create(device, options));
     const Texture view = make_texture(device, pool, 896, 1007, gradient), picture = make_texture(device, pool, 512, 512, gradient);
     std::vector<Layer> layers{projection_layer(view, options.eyes)};
@@ -57,6 +58,8 @@ BENCHMARK_CAPTURE(compose, fused_projection, true, 0)->Apply(measure);
 BENCHMARK_CAPTURE(compose, fused_projection_quad, true, 1)->Apply(measure);
 BENCHMARK_CAPTURE(compose, fused_projection_8_quads, true, 8)->Apply(measure);
 BENCHMARK_CAPTURE(compose, stages_projection_catmull_rom, false, 0, LensFilter::catmull_rom)->Apply(measure);
+BENCHMARK_CAPTURE(compose, combined_ordinary, true, 0, LensFilter::catmull_rom, "combined")->Apply(measure);
+BENCHMARK_CAPTURE(compose, combined_stages_projection, false, 0, LensFilter::catmull_rom, "combined")->Apply(measure);
 BENCHMARK_CAPTURE(compose, stages_projection_bilinear, false, 0, LensFilter::bilinear)->Apply(measure);
 
 }  // namespace

@@ -526,6 +526,69 @@ TEST(Frame, TheSameFrameTwiceIsTheSameToTheBit) {
     }
 }
 
+// The residual law: an ordinary application has the codes that it has with nothing simulated, by the same path.
+TEST(Frame, OrdinaryApplicationsKeepTheirCodesUnderCombined) {
+    for (const bool fuse : {true, false}) {
+        SCOPED_TRACE(fuse ? "fused" : "stages");
+        Screen off({120, 130}, vive_pro_eyes(), fuse), on({120, 130}, vive_pro_eyes(), fuse);
+        must(on.path->select(must(perception::select("combined"))));
+        const auto layers = [](Screen& screen) {
+            const Texture view = make_texture(test_device(), screen.pool, 150, 160, all_codes);
+            const Texture dark = make_texture(test_device(), screen.pool, 40, 40, [](int x, int y) { return Codes{std::uint8_t(x / 8), std::uint8_t(y / 8), 0, 128}; });
+            Layer quad = quad_layer(dark, {0, 0, -1}, 0.5f, 0.5f);
+            quad.blend_texture_source_alpha = true;
+            return std::vector<Layer>{projection_layer(view, screen.options.eyes), quad};
+        };
+        const std::vector<Layer> plain = layers(off), simulated = layers(on);
+        for (int i = 0; i < 3; ++i) {
+            off.compose(plain);
+            const FrameOutcome outcome = on.compose(simulated);
+            EXPECT_EQ(outcome.fused, fuse);
+            EXPECT_TRUE(outcome.ordinary);
+            EXPECT_GT(outcome.views[0].adaptation_cd_m2, 1);      // the eye adapts all the same
+            for (int eye = 0; eye < 2; ++eye) EXPECT_EQ(on.path->panel_picture(eye).data, off.path->panel_picture(eye).data);
+        }
+        // Nothing but a dark quad: what is not drawn is the panel's black, not a night to be brightened.
+        off.compose({plain[1]});
+        on.compose({simulated[1]});
+        EXPECT_EQ(on.path->panel_picture(0).data, off.path->panel_picture(0).data);
+    }
+}
+
+// A lamp beyond the panel takes the long way; when it is gone and its traces have faded, the short way is taken again, with the same codes.
+TEST(Frame, OrdinaryAgainAfterALamp) {
+    Screen off({120, 130}, vive_pro_eyes()), on({120, 130}, vive_pro_eyes());
+    must(on.path->select(must(perception::select("combined"))));
+    const auto lamp = make_float_texture(test_device(), on.pool, 150, 160, [](int x, int y) { return Linear{x < 80 && y < 80 ? 50.0f : 0.1f, 0.1f, 0.1f, 1}; });
+    const Layer bright = projection_layer(lamp, on.options.eyes), ordinary = projection_layer(make_texture(test_device(), on.pool, 150, 160, all_codes), on.options.eyes);
+    EXPECT_FALSE(on.compose({bright}).ordinary);
+    int frames = 0;
+    for (; frames < 600; ++frames) {
+        FrameDescription frame = description({ordinary}, on.options.eyes, 1 + std::uint64_t(frames));
+        frame.perception.snap = false;
+        frame.perception.dt_s = 1.0 / 90;
+        if (on.compose(frame).ordinary) break;
+    }
+    EXPECT_GT(frames, 1);
+    EXPECT_LT(frames, 450);
+    off.compose({projection_layer(make_texture(test_device(), off.pool, 150, 160, all_codes), off.options.eyes)});
+    EXPECT_EQ(on.path->panel_picture(0).data, off.path->panel_picture(0).data);
+}
+
+// What the eye adapts to is the same whether 16 points of a tile are looked at or all.
+TEST(Frame, AGlanceIsAsGoodAsALook) {
+    Screen glance({360, 400}, vive_pro_eyes(), true), look({360, 400}, vive_pro_eyes(), false);
+    for (Screen* screen : {&glance, &look}) {
+        must(screen->path->select(must(perception::select("combined"))));
+        const Texture view = make_texture(test_device(), screen->pool, 400, 400, [](int x, int y) { return Codes{std::uint8_t(x / 2), std::uint8_t(y / 2), std::uint8_t(128 + 90 * std::sin(x * 0.2)), 255}; });
+        screen->compose({projection_layer(view, screen->options.eyes)}, screen == &look ? stages : WantedPictures{});
+    }
+    const FrameOutcome a = glance.compose(std::vector<Layer>{}), b = look.compose(std::vector<Layer>{}, stages);
+    EXPECT_TRUE(a.fused);
+    EXPECT_FALSE(b.fused);
+    EXPECT_NEAR(glance.path->stage()->view(0).adaptation_cd_m2 / look.path->stage()->view(0).adaptation_cd_m2, 1, 0.02);
+}
+
 TEST(Frame, PredictTurnsTheGazeIntoEyeAxes) {
     struct StillHead : PoseSource {
         PoseState pose_at(TimeNs time) override {

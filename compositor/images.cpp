@@ -40,6 +40,11 @@ bool is_depth(VkFormat format) {
     return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D24_UNORM_S8_UINT ||
            format == VK_FORMAT_D32_SFLOAT_S8_UINT;
 }
+VkImageAspectFlags aspects_of(VkFormat format) {
+    if (!is_depth(format)) return VK_IMAGE_ASPECT_COLOR_BIT;
+    const bool stencil = format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    return stencil ? VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT : VK_IMAGE_ASPECT_DEPTH_BIT;
+}
 bool is_float(VkFormat format) { return format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT; }
 
 bool is_srgb8(VkFormat format) { return format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB; }
@@ -48,7 +53,7 @@ bool usable(const gpu::Device& device, VkFormat format) {
     VkFormatProperties properties{};
     vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
     const VkFormatFeatureFlags wanted = is_depth(format)
-                                            ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                            ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT
                                             : VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
                                                   VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
     return (properties.optimalTilingFeatures & wanted) == wanted;
@@ -92,7 +97,10 @@ ImageMemory describe(const gpu::Device& device, const gpu::Image& image, int fd)
 template <class Visit> void for_each_image(const std::vector<Layer>& layers, Visit visit) {
     for (const Layer& layer : layers) {
         visit(layer.views[0].image);
-        if (layer.kind == LayerKind::projection) visit(layer.views[1].image);
+        if (layer.kind != LayerKind::projection) continue;
+        visit(layer.views[1].image);
+        for (const entoptic::LayerView& view : layer.views)
+            if (view.depth.image.width > 0) visit(view.depth.image);
     }
 }
 
@@ -116,7 +124,10 @@ void ImageUse::release() {
     state_.reset();  // images of a destroyed swapchain go here, outside the lock
 }
 
-Result<SampledImage> ImageUse::find(const SubImage& wanted) const {
+Result<SampledImage> ImageUse::find(const SubImage& wanted) const { return find(wanted, false); }
+Result<SampledImage> ImageUse::find_depth(const SubImage& wanted) const { return find(wanted, true); }
+
+Result<SampledImage> ImageUse::find(const SubImage& wanted, bool depth) const {
     const auto held = std::find_if(held_.begin(), held_.end(),
                                    [&](const Held& h) { return h.swapchain->id == wanted.swapchain && h.index == wanted.image_index; });
     if (held == held_.end()) return failure(fmt::format("A layer names an image of swapchain {} that is not there.", wanted.swapchain));
@@ -124,14 +135,18 @@ Result<SampledImage> ImageUse::find(const SubImage& wanted) const {
     const gpu::Image& image = chain.images[held->index];
     if (wanted.array_layer >= image.info().layers)
         return failure(fmt::format("A layer names array slice {} of an image with {}.", wanted.array_layer, image.info().layers));
-    if (is_depth(image.info().format)) return failure("A layer names an image with a depth format; layers need colour.");
+    const VkFormat format = image.info().format;
+    if (depth != is_depth(format)) {
+        return failure(depth ? "A layer's depth names an image with a colour format; it needs depth."
+                             : "A layer names an image with a depth format; layers need colour.");
+    }
     const std::lock_guard lock(state_->mutex);
     VkImageView& view = chain.views[held->index][wanted.array_layer];
     if (!view) {
-        ENTOPTIC_TRY(created, image.create_view(wanted.array_layer, image.info().format, VK_IMAGE_ASPECT_COLOR_BIT));
+        ENTOPTIC_TRY(created, image.create_view(wanted.array_layer, format, depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT));
         view = created;
     }
-    return SampledImage{image.handle(), view, is_float(image.info().format), is_srgb8(image.info().format)};
+    return SampledImage{image.handle(), view, is_float(format), is_srgb8(format), aspects_of(format)};
 }
 
 SwapchainPool::SwapchainPool(gpu::Device& device) : device_(device), state_(std::make_shared<PoolState>()) {

@@ -20,6 +20,7 @@ struct SampledImage {
     VkImageView view = VK_NULL_HANDLE;  // of one array layer, mip 0
     bool is_float = false;              // can hold NaN, infinities and negatives
     bool is_srgb8 = false;              // holds 8-bit codes of the panel's own curve
+    VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT;  // of the image; the view of a depth image shows depth
 };
 
 // The images that a frame's layers name, held as long as this lives: wait_idle() waits for it, and destroyed swapchains stay.
@@ -32,9 +33,12 @@ public:
     void release();
     // Errors: the frame does not hold that image.
     Result<SampledImage> find(const SubImage& image) const;
+    // The same for a depth image.
+    Result<SampledImage> find_depth(const SubImage& image) const;
 
 private:
     friend class SwapchainPool;
+    Result<SampledImage> find(const SubImage& wanted, bool depth) const;
     struct Held {
         std::shared_ptr<SwapchainImages> swapchain;
         std::uint32_t index = 0;

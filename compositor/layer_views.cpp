@@ -1,5 +1,6 @@
 #include "compositor/layer_views.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
@@ -97,6 +98,53 @@ std::optional<LayerView> layer_view(const Layer& layer, int eye, const EyePlace&
     view.offset_cd = layer.luminance.offset_cd;
     view.flags = flags_of(layer, is_float);
     return view;
+}
+
+namespace {
+
+// Distance along its axis, as 1/m, of what a depth image holds; false when the numbers cannot be used.
+bool read_range(const LayerDepth& depth, DepthLayer& into) {
+    const double span = double(depth.max_depth) - double(depth.min_depth);
+    if (!(depth.near_z_m > 0) || !(depth.far_z_m > 0) || depth.near_z_m == depth.far_z_m || !(span > 0)) return false;
+    const double near = 1 / double(depth.near_z_m), far = 1 / double(depth.far_z_m);
+    const double per_unit = (far - near) / span;
+    into.dioptre_per_unit = static_cast<float>(per_unit);
+    into.dioptre_at_zero = static_cast<float>(near - per_unit * double(depth.min_depth));
+    into.least = depth.min_depth;
+    into.most = depth.max_depth;
+    return true;
+}
+
+// Distance of the eye from the quad's plane.
+double plane_distance(const Layer& layer, const EyePlace& place) {
+    return (inverse(as_double(layer.space_from_quad)) * space_from_eye(layer, place)).position.z;
+}
+
+}  // namespace
+
+std::optional<DepthLayer> depth_layer(const Layer& layer, int eye, const EyePlace& place, const EyeGeometry& geometry) {
+    const auto colour = layer_view(layer, eye, place, geometry, false);
+    if (!colour) return std::nullopt;
+    DepthLayer into{};
+    std::copy_n(colour->texel_from_lens + 3, 3, into.colour_from_lens);
+    into.low = colour->low;
+    into.high = colour->high;
+    into.flags = (colour->flags & layer_blends) != 0 ? depth_blends : 0u;
+    if (layer.kind == LayerKind::quad) {
+        into.flags |= depth_known;
+        into.dioptre_at_zero = static_cast<float>(1 / plane_distance(layer, place));
+        return into;
+    }
+    const LayerDepth& depth = layer.views[std::size_t(eye)].depth;
+    if (depth.image.width <= 0 || depth.image.height <= 0 || !read_range(depth, into)) return into;
+    Layer its_depth = layer;  // seen from the same place, with texels of its own
+    its_depth.views[std::size_t(eye)].image = depth.image;
+    const auto view = layer_view(its_depth, eye, place, geometry, false);
+    std::copy_n(view->texel_from_lens + 3, 3, into.depth_from_lens);
+    into.depth_low = view->clamp_low;
+    into.depth_high = view->clamp_high;
+    into.flags |= depth_known | depth_sampled;
+    return into;
 }
 
 }  // namespace entoptic::compositor

@@ -1,6 +1,7 @@
 // Layers to what each eye sees of them: all geometry of the warp that does not change from pixel to pixel, in double precision.
 #pragma once
 
+#include "compositor/depth_layer.h"
 #include "compositor/layer_view.h"
 #include "interfaces/layers.h"
 #include "shaders/eye_geometry.h"
@@ -20,5 +21,9 @@ struct EyePlace {
 // eye, an empty sub-image, a field of view or quad without extent, the quad's back.
 // `is_float`: the format of the layer's image can hold values that are not finite.
 std::optional<LayerView> layer_view(const Layer& layer, int eye, const EyePlace& place, const EyeGeometry& geometry, bool is_float);
+
+// How far away the same layer is; nothing when layer_view() gives nothing. Projection layers: as their depth image says, along the axis of
+// the view that they were drawn for; unusable numbers count as unknown. Quads: where they stand.
+std::optional<DepthLayer> depth_layer(const Layer& layer, int eye, const EyePlace& place, const EyeGeometry& geometry);
 
 }  // namespace entoptic::compositor

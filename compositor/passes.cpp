@@ -4,6 +4,7 @@
 
 #include "compositor/clear.comp.h"
 #include "compositor/fused.comp.h"
+#include "compositor/glance.comp.h"
 #include "compositor/lens.comp.h"
 #include "compositor/panel.comp.h"
 #include "compositor/seen.comp.h"
@@ -158,6 +159,15 @@ void LayerTable::clear() {
     only_srgb8_ = true;
 }
 
+bool LayerTable::within(const perception::DisplayRange& display) const {
+    if (has_float_) return false;
+    for (const auto& views : views_)
+        for (const LayerView& view : views)
+            if (!(view.offset_cd >= 0.999f * display.black_cd_m2 && view.cd_per_unit >= 0 && view.cd_per_unit + view.offset_cd <= 1.000001f * display.white_cd_m2))
+                return false;
+    return true;
+}
+
 void LayerTable::add(int eye, const LayerView& view, const SampledImage& image) {
     auto& views = views_[std::size_t(eye)];
     if (views.size() >= layer_slots) return;
@@ -184,13 +194,14 @@ void LayerTable::append_images(int eye, std::vector<gpu::Binding>& bindings) con
 }
 
 LayerKernels::LayerKernels(gpu::Device& device, std::string name, std::span<const std::uint32_t> spirv, std::uint32_t push_bytes,
-                           bool achromatic, std::vector<std::uint32_t> more_constants)
+                           bool achromatic, std::vector<std::uint32_t> more_constants, std::size_t more_buffers)
     : device_(&device),
       name_(std::move(name)),
       spirv_(spirv),
       push_bytes_(push_bytes),
       achromatic_(achromatic),
-      more_constants_(std::move(more_constants)) {}
+      more_constants_(std::move(more_constants)),
+      more_buffers_(more_buffers) {}
 
 Result<const gpu::Kernel*> LayerKernels::get(std::uint32_t layers, bool clean_values) {
     const std::uint32_t slots = *std::lower_bound(slot_counts.begin(), slot_counts.end(), std::min(layers, layer_slots));
@@ -201,6 +212,7 @@ Result<const gpu::Kernel*> LayerKernels::get(std::uint32_t layers, bool clean_va
     info.spirv = spirv_;
     info.bindings = buffers(2, 3);
     info.bindings.insert(info.bindings.end(), layer_slots, BindingKind::sampled_image);
+    info.bindings.insert(info.bindings.end(), more_buffers_, BindingKind::storage_buffer);
     info.push_constant_bytes = push_bytes_;
     info.specialization = {slots, clean_values, achromatic_};
     info.specialization.insert(info.specialization.end(), more_constants_.begin(), more_constants_.end());
@@ -232,6 +244,26 @@ Result<SceneImage> WarpPass::record(gpu::Commands& commands, const LayerTable& l
                           hidden.groups());
     }
     return SceneImage{&stage.scene(), grids_.size()};
+}
+
+Result<GlancePass> GlancePass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& geometry) {
+    GlancePass pass;
+    ENTOPTIC_TRY(grids, EyeGrids::create(device, geometry, tile_width, tile_height, "glance"));
+    pass.grids_ = std::move(grids);
+    pass.kernels_ = LayerKernels(device, "glance", glance_comp_spv, sizeof(TilePush), false, {}, 1);
+    return pass;
+}
+
+Result<void> GlancePass::record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage) {
+    const std::uint32_t tiles = stage.tiles_x() * stage.tiles_y();
+    for (int eye = 0; eye < eye_count; ++eye) {
+        ENTOPTIC_TRY(kernel, kernels_.get(layers.count(eye), layers.has_float()));
+        std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), grids_.shown(eye).list, stage.tiles(), stage.solid_angle()};
+        layers.append_images(eye, bindings);
+        bindings.emplace_back(stage.scene());
+        commands.dispatch(*kernel, bindings, bytes_of(TilePush{std::uint32_t(eye), tiles}), {gpu::groups_for(tiles, 64), 1, 1});
+    }
+    return {};
 }
 
 Result<LensPass> LensPass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel, PictureSize eye_size,

@@ -59,6 +59,8 @@ public:
     bool has_float() const { return has_float_; }
     // All layers are 8-bit codes of the panel's own curve: what is between two codes is a product of resampling only.
     bool only_srgb8() const { return only_srgb8_; }
+    // The formats and scales of all layers keep their light within the panel's range: no pixel has to be looked at to know.
+    bool within(const perception::DisplayRange& display) const;
     const std::vector<VkImage>& images() const { return unique_; }  // each once
     // Bindings 1 and 5..20 of layers.glsl.
     gpu::Binding layers() const { return buffer_; }
@@ -82,8 +84,9 @@ private:
 class LayerKernels {
 public:
     LayerKernels() = default;
+    // `more_buffers`: storage buffers after the images.
     LayerKernels(gpu::Device& device, std::string name, std::span<const std::uint32_t> spirv, std::uint32_t push_bytes, bool achromatic,
-                 std::vector<std::uint32_t> more_constants);
+                 std::vector<std::uint32_t> more_constants, std::size_t more_buffers = 0);
     Result<const gpu::Kernel*> get(std::uint32_t layers, bool clean_values);
 
 private:
@@ -93,6 +96,7 @@ private:
     std::uint32_t push_bytes_ = 0;
     bool achromatic_ = false;
     std::vector<std::uint32_t> more_constants_;
+    std::size_t more_buffers_ = 0;
     std::map<std::pair<std::uint32_t, bool>, gpu::Kernel> kernels_;
 };
 
@@ -107,6 +111,18 @@ private:
     EyeGrids grids_;
     LayerKernels warp_;
     gpu::Kernel clear_;
+};
+
+// Layers → statistics of the scene's tiles, from a few points of each: what an eye that is shown the layers as they are adapts to.
+class GlancePass {
+public:
+    static Result<GlancePass> create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& geometry);
+    // Writes stage.tiles(), and the glanced points of stage.scene(), on the grid of `geometry`, which the stage was made with too.
+    Result<void> record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage);
+
+private:
+    EyeGrids grids_;
+    LayerKernels kernels_;
 };
 
 enum class LensFilter { bilinear, catmull_rom };

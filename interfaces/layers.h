@@ -34,10 +34,19 @@ struct LayerLuminance {
 enum class LayerKind { projection, quad };
 enum class EyeVisibility { both, left, right };
 
+// How far away a projection layer's picture is. 1 over the distance along the view's axis is linear in the texel: 1/near_z_m where it is
+// min_depth, 1/far_z_m where it is max_depth. Either may be infinite, and near may lie beyond far.
+struct LayerDepth {
+    SubImage image;             // width 0: the application does not say
+    float min_depth = 0, max_depth = 1;
+    float near_z_m = 0, far_z_m = 0;
+};
+
 struct LayerView {
     Pose space_from_view;   // projection: pose of the eye the picture was rendered for, in the layer's space
     Fov fov;
     SubImage image;
+    LayerDepth depth;       // projection only
 };
 
 // One composition layer. Painter's order: the first is farthest back.

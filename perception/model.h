@@ -56,6 +56,9 @@ struct FrameInput {
     bool snap = false;          // states jump to their steady state (first frame, stall over 2 s, focus regained)
     std::vector<EyeInput> eyes; // one a view
     std::uint64_t index = 0;    // counts frames; seeds noise
+    bool within_display = false;   // known without looking: all light of this frame lies within the display's range (ordinary 8-bit layers)
+    bool glanced = false;          // of the scene only the points of glance_point() were written in this frame; the tiles' statistics are theirs
+    float vergence_dioptre = -1;    // 1/m: where both lines of sight meet; negative: nobody has measured it
 };
 
 // State that models hand to each other, one a view, on the GPU. Scalar layout, shared with GLSL: perception/observer_state.h.
@@ -79,6 +82,8 @@ struct StageIo {
     std::uint32_t tiles_x = 0, tiles_y = 0;
     DisplayRange display;
     const FrameInput& input;
+    const gpu::Buffer* dioptre = nullptr;   // float a pixel, as solid_angle: 1 over the distance from the eye, 1/m; 0 infinity, negative
+                                            // unknown. Null when nobody knows a depth in this frame, or no chosen model NeedsDepth.
 };
 
 struct ModelContext {
@@ -99,6 +104,9 @@ public:
     virtual Result<void> set_files(const FilePaths&) { return {}; }
     // True when these parameters change nothing for any scene: the model is not recorded at all.
     virtual bool is_identity() const { return false; }
+    // True when these parameters leave every picture alone whose light is within the display's range (FrameInput::within_display), once the
+    // model's states are at rest: its gate then says that it did not run. Adaptation, which never touches the picture, always does.
+    virtual bool obeys_residual_law() const { return false; }
     // Records the model for one frame: gate, then work through indirect dispatches, so that a gated frame costs nothing.
     // Every dispatch that depends on an earlier one is preceded by io.commands.barrier(); the stage puts barriers around the model.
     // Errors switch the model off, with the reason in the report; the frame is shown without it.
@@ -113,12 +121,33 @@ public:
     virtual Result<void> plan(StageIo& io) = 0;
 };
 
+// What the stage knows of a view from the frame before; zeroes before the first.
+struct SceneFeedback {
+    double scene_cd_m2 = 0;      // mean luminance of the scene
+    double displayed_cd_m2 = 0;  // mean luminance that the panel showed of it
+    double area_deg2 = 0;        // of the view
+};
+
+// A model that changes what is known of the eyes before the other models hear of it; it records no GPU work.
+class AdjustsEyes {
+public:
+    virtual ~AdjustsEyes() = default;
+    // `feedback` of each view. Leaves finite values within the ranges of EyeInput.
+    virtual void adjust(FrameInput& input, std::span<const SceneFeedback> feedback) = 0;
+};
+
 // A model that acts late on states driven by the light on the retina: recorded just before the tone models, when the picture is that
 // light. Reads the scene only.
 class ObservesRetina {
 public:
     virtual ~ObservesRetina() = default;
     virtual Result<void> observe(StageIo& io) = 0;
+};
+
+// A model that reads StageIo::dioptre. Only while such a model is chosen and does something is depth kept and computed.
+class NeedsDepth {
+public:
+    virtual ~NeedsDepth() = default;
 };
 
 // The same model in double precision by an independent, slow and obvious algorithm. Works on whole images, one view.
@@ -134,6 +163,9 @@ struct ReferenceFrame {
     // The tone curve of this frame, written by the tone model's plan(); see ToneCurve.
     double exposure = 1, scene_white_cd_m2 = 130;
     std::function<double(double)> displayed = nullptr;   // displayed of scene luminance, cd/m²; empty: no tone model
+    ImageD dioptre{};              // one channel, as StageIo::dioptre; empty: no depth is known
+    double vergence_dioptre = -1;  // as FrameInput's
+    double focus_dioptre = -1;     // state, in and out: written by `dof`; negative before the first known depth
 };
 class ReferenceModel {
 public:

@@ -24,12 +24,14 @@ struct ObserverState {
     float adaptation_cd_m2;     // A: what the eye is adapted to; 0 before the first frame
     float target_cd_m2;         // where it goes: gaze-weighted luminance of this frame
     uint initialised;           // 0 before the first frame
-    float bright_y;             // smoothed 99.9th percentile of luminance, cd/m²; 0 before the first frame
+    // Of the tone model, smoothed over time; 0 before its first frame.
+    float bright_y;             // 99.9th percentile of luminance, cd/m²
+    float night_weight, day_weight, shoulder;    // how far the picture is exposed for the dark, for the light; highlights compressed: 0..1
     ToneCurve tone;
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ObserverState) == 4 * (4 + 3 + tone_points), "scalar layout: the GLSL side must agree");
+static_assert(sizeof(ObserverState) == 4 * (7 + 3 + tone_points), "scalar layout: the GLSL side must agree");
 }  // namespace entoptic::perception
 #endif
 

@@ -33,7 +33,7 @@ struct Preset {
     std::vector<PresetParameter> parameters;                             // that differ from the models' defaults
 };
 std::span<const Preset> presets();
-inline constexpr std::string_view default_preset = "luidolt2020";
+inline constexpr std::string_view default_preset = "combined";
 
 // `models` holds "slot=model" (model may be "none"), `settings` "slot.parameter=value" or "slot.file=path"; later ones win.
 // Errors (usage) name the choices there are: unknown preset, slot, model, parameter; value not a number or out of range; a file that the

@@ -22,10 +22,13 @@ using gpu::BindingKind;
 
 struct StatisticsPush {
     uint tile_count;
+    float black_cd_m2;
 };
 struct SizePush {
     uint width, height;
 };
+
+float dioptre_of_metres(float metres) { return metres > 0 ? std::min(1 / metres, max_dioptre) : unknown_dioptre; }
 
 std::string label(const Choice& choice) { return fmt::format("perceive.{}", choice.entry->slot); }
 
@@ -141,10 +144,19 @@ Result<void> Stage::select(const Selection& selection) {
     }
     slots_ = std::move(next);
     selection_ = selection;
+    if (!wants_depth() || dioptre_) return {};
+    ENTOPTIC_TRY(dioptre, gpu::Buffer::create(device_, view_bytes() / 4 * views_, gpu::BufferKind::device, "dioptres"));
+    dioptre_ = std::move(dioptre);
     return {};
 }
 
-Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images) {
+bool Stage::wants_depth() const {
+    return std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+        return slot.failed.empty() && slot.model && dynamic_cast<NeedsDepth*>(slot.model.get()) && !slot.model->is_identity();
+    });
+}
+
+Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images, std::span<const ImageF> depths) {
     const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * 3 * sizeof(float);
     if (images.size() != views_) return failure(fmt::format("The stage has {} views but {} pictures came.", views_, images.size()));
     if (!upload_) {
@@ -160,8 +172,28 @@ Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const Image
     }
     commands.begin_stage("ingest");
     commands.dispatch(ingest_, {upload_, solid_angle_, scene_}, SizePush{width_, height_}, {gpu::groups_for(width_, 32), gpu::groups_for(height_, 8), views_});
+    if (!depths.empty() && wants_depth()) ENTOPTIC_CHECK(record_depth(commands, depths));
     commands.barrier();
     commands.end_stage();
+    return {};
+}
+
+Result<void> Stage::record_depth(gpu::Commands& commands, std::span<const ImageF> depths) {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    if (depths.size() != views_) return failure(fmt::format("The stage has {} views but {} depths came.", views_, depths.size()));
+    if (!depth_upload_) {
+        ENTOPTIC_TRY(upload, gpu::Buffer::create(device_, dioptre_.size(), gpu::BufferKind::upload, "depth upload"));
+        depth_upload_ = std::move(upload);
+    }
+    for (std::uint32_t v = 0; v < views_; ++v) {
+        const ImageF& depth = depths[v];
+        if (depth.width != static_cast<int>(width_) || depth.height != static_cast<int>(height_) || depth.channels != 1)
+            return failure(fmt::format("A depth of {}x{} with 1 channel was expected, {}x{} with {} came.", width_, height_, depth.width, depth.height,
+                                       depth.channels));
+        std::ranges::transform(depth.data, depth_upload_.as<float>().begin() + static_cast<std::ptrdiff_t>(v * pixels), dioptre_of_metres);
+    }
+    commands.copy(depth_upload_, dioptre_, dioptre_.size());
+    depth_written();
     return {};
 }
 
@@ -188,7 +220,8 @@ template <class Part>
 void Stage::record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input) {
     auto* model = dynamic_cast<Part*>(slot.model.get());
     if (!model || !slot.failed.empty() || slot.model->is_identity()) return;
-    StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input};
+    StageIo io{commands, scene_, geometry_, solid_angle_, tiles_, statistics_, state_, slot.gate, width_, height_, views_, tiles_x(), tiles_y(), context_.display, input,
+               has_depth_ ? &dioptre_ : nullptr};
     commands.begin_stage(label(slot.choice) + suffix);
     const auto recorded = (model->*part)(io);
     commands.barrier();
@@ -199,28 +232,94 @@ void Stage::record_part(Slot& slot, const char* suffix, Result<void> (Part::*par
     log::error("The model {} is switched off: {}", slot.choice.entry->name, slot.failed);
 }
 
-void Stage::record(gpu::Commands& commands, const FrameInput& input) {
-    assert(input.eyes.size() == views_);
+// The mean that the panel showed: of the histogram's tiles through the tone curve, so that a lamp counts as much as the panel can show of it.
+SceneFeedback Stage::feedback(std::uint32_t view) const {
+    const SceneStatistics& s = statistics_readback_.as<SceneStatistics>()[view];
+    const ToneCurve& tone = state_readback_.as<ObserverState>()[view].tone;
+    SceneFeedback f{static_cast<double>(s.mean_y), 0, static_cast<double>(s.sum_sr) * 3282.80635};
+    double tiles = 0;
+    for (uint b = 0; b < histogram_bins; ++b) {
+        const double log10_y = 14 * (b + 0.5) / histogram_bins - 6;
+        const auto i = std::min(static_cast<std::size_t>((log10_y + 6) * tone_points_per_decade), static_cast<std::size_t>(tone_points - 1));
+        f.displayed_cd_m2 += s.histogram[b] * std::pow(10.0, static_cast<double>(tone.log10_displayed[i]));
+        tiles += s.histogram[b];
+    }
+    f.displayed_cd_m2 /= std::max(tiles, 1.0);
+    // As far as the panel shows the scene as it is, both means are the same number, whatever the histogram's bins.
+    if (tone.exposure == 1.0f && s.max_y <= tone.straight_until_cd_m2) f.displayed_cd_m2 = f.scene_cd_m2;
+    return f;
+}
+
+FrameInput Stage::adjusted(const FrameInput& input) {
+    FrameInput out = input;
+    std::vector<SceneFeedback> known;
+    for (std::uint32_t view = 0; view < views_; ++view) known.push_back(feedback(view));
+    for (Slot& slot : slots_)
+        if (auto* model = dynamic_cast<AdjustsEyes*>(slot.model.get()); model && slot.failed.empty()) model->adjust(out, known);
+    return out;
+}
+
+void Stage::record(gpu::Commands& commands, const FrameInput& measured) {
+    assert(measured.eyes.size() == views_);
+    input_ = adjusted(measured);
+    const FrameInput& input = input_;
     commands.begin_stage("statistics");
     commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
     commands.barrier();
-    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y()}, {views_, 1, 1});
-    commands.barrier();
+    record_view_statistics(commands);
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
-    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), is("adaptation"));
-    const auto tone = std::find_if(slots_.begin(), slots_.end(), is("tone"));
-    for (Slot& slot : slots_) slot.recorded = false;
+    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), [&](const Slot& slot) { return is("pupil")(slot) || is("adaptation")(slot); });
+    // Where scene light ends: without a tone model, before the first model that acts on what it observed.
+    const auto tone = std::find_if(slots_.begin(), slots_.end(),
+                                   [&](const Slot& slot) { return is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get()); });
+    for (Slot& slot : slots_) slot.recorded = slot.resting = false;
     for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
     for (auto slot = adaptation_end; slot != tone; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".observe", &ObservesRetina::observe, commands, input);
     for (auto slot = tone; slot != slots_.end(); ++slot) record_part(*slot, "", &Model::record, commands, input);
+    record_readbacks(commands);
+}
+
+bool Stage::obeys_residual_law() const {
+    return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return !s.model || !s.failed.empty() || s.model->is_identity() || s.model->obeys_residual_law(); });
+}
+
+bool Stage::at_rest() const {
+    return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.gate_readback.as<Gate>()[0].ran == 0; });
+}
+
+void Stage::record_at_rest(gpu::Commands& commands, const FrameInput& input) {
+    assert(input.eyes.size() == views_);
+    input_ = adjusted(input);
+    input_.within_display = input_.glanced = true;
+    const FrameInput& inside = input_;
+    commands.begin_stage("statistics");
+    record_view_statistics(commands);
+    commands.end_stage();
+    for (Slot& slot : slots_) {
+        const bool adapts = slot.choice.entry->slot == "adaptation" || slot.choice.entry->slot == "pupil";
+        slot.recorded = false;
+        slot.resting = !adapts && slot.model && slot.failed.empty() && !slot.model->is_identity();
+        if (adapts) record_part(slot, "", &Model::record, commands, inside);
+    }
+    for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, inside);
+    record_readbacks(commands);
+}
+
+void Stage::record_view_statistics(gpu::Commands& commands) {
+    commands.dispatch(statistics_kernel_, {tiles_, statistics_}, StatisticsPush{tiles_x() * tiles_y(), context_.display.black_cd_m2}, {views_, 1, 1});
+    commands.barrier();
+}
+
+void Stage::record_readbacks(gpu::Commands& commands) {
     for (Slot& slot : slots_)
         if (slot.recorded) commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
     commands.copy(statistics_, statistics_readback_, statistics_.size());
     commands.copy(state_, state_readback_, state_.size());
     commands.barrier();
+    has_depth_ = false;
 }
 
 Result<void> Stage::record_download(gpu::Commands& commands, std::uint32_t view) {
@@ -245,11 +344,12 @@ std::vector<EffectOutcome> Stage::effects() const {
     std::vector<EffectOutcome> outcomes;
     for (const Slot& slot : slots_) {
         const Gate& gate = slot.gate_readback.as<Gate>()[0];
-        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded, false, slot.failed, {}, 0};
+        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded || slot.resting, false, slot.failed, {}, 0};
         // A model that has no gate never sets a counter: it always runs.
-        outcome.gated = slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0;
-        outcome.bound_codes = outcome.gated ? gate.bound : 0;
+        outcome.gated = slot.resting || (slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0);
+        outcome.bound_codes = outcome.gated && !slot.resting ? gate.bound : 0;
         if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
+        else if (slot.resting) outcome.why = "not needed: all light of the frame is within the display's range";
         else if (!slot.recorded) outcome.why = "its parameters change nothing";
         else if (outcome.gated) outcome.why = fmt::format("cannot be seen in this frame (at most {:.3g} of a code value)", gate.bound);
         else outcome.why = "runs";

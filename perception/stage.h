@@ -52,20 +52,36 @@ public:
     std::uint32_t views() const { return views_; }
     std::uint32_t tiles_x() const { return gpu::groups_for(width_, tile_width); }
     std::uint32_t tiles_y() const { return gpu::groups_for(height_, tile_height); }
+    // Whether a chosen model wants to know how far away things are. Then whoever writes the scene may also write depth() (float a pixel, laid
+    // out as solid_angle(): 1/m, 0 infinity, negative unknown) and says so with depth_written(), for this frame. Nothing is kept otherwise.
+    bool wants_depth() const;
+    const gpu::Buffer& depth() const { return dioptre_; }
+    void depth_written() { has_depth_ = true; }
     std::size_t view_bytes() const { return std::size_t(width_) * height_ * sizeof(vec4); }
 
     // For pictures that come from the CPU: uploads RGB (one image a view, of the stage's size, any values) and records the pass that
-    // cleans it and writes the scene. Waits for nothing; call before record() in the same batch.
-    Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images);
+    // cleans it and writes the scene. Waits for nothing; call before record() in the same batch. `depths`: none, or one image a view, one
+    // channel, metres from the eye along the line of sight; infinity is far, NaN, zero and negatives are unknown.
+    Result<void> record_ingest(gpu::Commands& commands, std::span<const ImageF> images, std::span<const ImageF> depths = {});
     // The eyes have been adapted to this luminance (cd/m²) until now: the state before the next frame. Call between frames.
     void set_adaptation(float cd_m2);
     // Records statistics and all models. The scene must have been written earlier in the same batch, with a barrier() after it.
     // Each model is a stage of `commands` ("perceive.glare"). Leaves a barrier behind.
     void record(gpu::Commands& commands, const FrameInput& input);
+    // The models leave light within the display's range alone (Model::obeys_residual_law), and
+    bool obeys_residual_law() const;
+    // none of them changed the picture recorded last: no state of the eye shows. True before the first frame.
+    bool at_rest() const;
+    // For a frame that needs no picture from the stage: both of the above, and all its light within the display's range. tiles() and the
+    // points of glance_point() must have been written earlier in the batch; adaptation and the tone curve go on, the models are not recorded.
+    void record_at_rest(gpu::Commands& commands, const FrameInput& input);
+    const gpu::Buffer& tiles() const { return tiles_; }
     // Records the copy of one view of the image to host memory; read it with downloaded() after the batch was waited for.
     Result<void> record_download(gpu::Commands& commands, std::uint32_t view);
     ImageF downloaded(std::uint32_t view) const;   // RGB
 
+    // The observer of the frame recorded last, as the models were told.
+    const FrameInput& input() const { return input_; }
     // Of the frame recorded last; valid after its batch was waited for.
     std::vector<EffectOutcome> effects() const;
     ViewOutcome view(std::uint32_t index) const;
@@ -84,12 +100,18 @@ private:
         std::unique_ptr<Model> model;
         gpu::Buffer gate, gate_readback;
         std::string failed;
-        bool recorded = false;
+        bool recorded = false, resting = false;
     };
+    // The observer as the AdjustsEyes models leave it.
+    FrameInput adjusted(const FrameInput& input);
+    SceneFeedback feedback(std::uint32_t view) const;
+    void record_view_statistics(gpu::Commands& commands);
+    void record_readbacks(gpu::Commands& commands);
     explicit Stage(gpu::Device& device) : device_(device) {}
     Result<void> allocate(const StageOptions& options);
     Result<void> create_kernels();
     Result<void> fill_solid_angles();
+    Result<void> record_depth(gpu::Commands& commands, std::span<const ImageF> depths);
     Result<Slot> make_slot(const Choice& choice);
     ObserverState fresh_state() const;
     template <class Part> void record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input);
@@ -97,9 +119,12 @@ private:
     gpu::Device& device_;
     ModelContext context_{device_, {}, {}, 1, true};
     Selection selection_;
+    FrameInput input_;
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;
     gpu::Buffer scene_, tiles_, solid_angle_, geometry_, statistics_, state_;
     gpu::Buffer upload_, statistics_readback_, state_readback_;
+    gpu::Buffer dioptre_, depth_upload_;  // made when first wanted
+    bool has_depth_ = false;              // depth_written() in this frame
     std::vector<gpu::Buffer> downloads_;
     gpu::Kernel ingest_, tiles_kernel_, statistics_kernel_;
     std::vector<Slot> slots_;

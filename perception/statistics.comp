@@ -11,9 +11,13 @@ layout(local_size_x = 256) in;
 layout(scalar, binding = 0) readonly buffer Tiles { TileStatistics tiles[]; };
 layout(scalar, binding = 1) buffer Statistics { SceneStatistics statistics[]; };
 
-layout(scalar, push_constant) uniform Push { uint tile_count; } push;
+layout(scalar, push_constant) uniform Push {
+    uint tile_count;
+    float black_cd_m2;      // what the display shows at least
+} push;
 
 shared TileStatistics parts[256];
+shared float dark_sr[256];
 shared uint bins[histogram_bins];
 
 const float histogram_low = -6.0, histogram_high = 8.0;   // log10 cd/m²
@@ -46,15 +50,22 @@ void main() {
     if (i < histogram_bins) bins[i] = 0u;
     barrier();
     TileStatistics sum = TileStatistics(0.0, 0.0, 3e38, 0.0, 0.0, 0u, 0u);
+    float dark = 0.0;
     for (uint t = i; t < push.tile_count; t += 256u) {
         const TileStatistics tile = tiles[view * push.tile_count + t];
         if (tile.visible > 0u) atomicAdd(bins[bin_of(tile.sum_y_sr / max(tile.sum_sr, 1e-20))], 1u);
+        // A thousandth below, so that a black that was only rounded does not count.
+        if (tile.sum_y_sr < 0.999 * push.black_cd_m2 * tile.sum_sr) dark += tile.sum_sr;
         sum = merged(sum, tile);
     }
     parts[i] = sum;
+    dark_sr[i] = dark;
     for (uint stride = 128u; stride > 0u; stride /= 2u) {
         barrier();
-        if (i < stride) parts[i] = merged(parts[i], parts[i + stride]);
+        if (i < stride) {
+            parts[i] = merged(parts[i], parts[i + stride]);
+            dark_sr[i] += dark_sr[i + stride];
+        }
     }
     barrier();
     if (i != 0u) return;
@@ -65,6 +76,7 @@ void main() {
     statistics[view].mean_y = all.sum_y_sr / max(all.sum_sr, 1e-20);
     statistics[view].median_tile_y = median_luminance();
     statistics[view].sum_sr = all.sum_sr;
+    statistics[view].dark_share = dark_sr[0] / max(all.sum_sr, 1e-20);
     statistics[view].cleaned = all.cleaned;
     statistics[view].visible = all.visible;
     for (uint b = 0; b < histogram_bins; ++b) statistics[view].histogram[b] = bins[b];

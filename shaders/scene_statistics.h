@@ -21,6 +21,9 @@ const float pixel_cleaned = 2.0f;   // visible, and held NaN, infinity, a negati
 const float max_scene_cd_m2 = 1e8f;
 // Luminance floor of everything that takes a logarithm or divides, cd/m².
 const float min_scene_cd_m2 = 1e-6f;
+// Nearest that anything is taken to be, 1/m: 5 cm. Distances are kept as 1 over metres, 0 is infinitely far.
+const float max_dioptre = 20.0f;
+const float unknown_dioptre = -1.0f;
 
 struct TileStatistics {
     float sum_y_sr;       // sum over visible pixels of luminance times solid angle, cd/m² sr
@@ -31,6 +34,10 @@ struct TileStatistics {
     uint visible;         // pixels that the lens shows
 };
 
+// Points of a tile that a glance looks at when the whole scene need not be drawn: columns by rows, in the middles of as many equal parts.
+const uint glance_columns = 8;
+const uint glance_rows = 2;
+
 const uint histogram_bins = 64;     // of log10 luminance of tile means, from -6 to 8
 
 // Of one view (eye).
@@ -40,12 +47,13 @@ struct SceneStatistics {
     float median_tile_y;               // of tile means, from the histogram, cd/m²
     float gaze_y;                      // gaze-weighted mean that drives adaptation, cd/m² (written by the adaptation model)
     float sum_sr;                      // solid angle of the view, sr
+    float dark_share;                  // share of the solid angle in tiles whose mean is darker than the display's black
     uint cleaned, visible;
     uint histogram[histogram_bins];    // tiles a bin
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TileStatistics) == 28 && sizeof(SceneStatistics) == 36 + 4 * 64, "scalar layout: the GLSL side must agree");
+static_assert(sizeof(TileStatistics) == 28 && sizeof(SceneStatistics) == 40 + 4 * 64, "scalar layout: the GLSL side must agree");
 }  // namespace entoptic
 #endif
 

@@ -16,6 +16,11 @@ vec3 clean_scene_colour(vec3 c, out bool changed) {
     return cleaned;
 }
 
+// The i-th point of a glance at a tile of `extent` pixels, from the tile's corner.
+uvec2 glance_point(uvec2 extent, uint i) {
+    return uvec2((2u * (i % glance_columns) + 1u) * extent.x / (2u * glance_columns), (2u * (i / glance_columns) + 1u) * extent.y / (2u * glance_rows));
+}
+
 // The vec4 of an eye-image pixel: w is pixel_hidden, pixel_visible or pixel_cleaned.
 vec4 scene_pixel(vec3 cleaned, bool visible, bool changed) {
     return visible ? vec4(cleaned, changed ? pixel_cleaned : pixel_visible) : vec4(0.0, 0.0, 0.0, pixel_hidden);

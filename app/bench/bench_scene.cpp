@@ -37,6 +37,16 @@ ImageF bench_scene(int width, int height) {
     return image;
 }
 
+ImageF bench_depth(int width, int height) {
+    ImageF depth(width, height, 1);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+            depth.at(x, y, 0) = 1 / (t / 0.5f + (1 - t) / 20);
+        }
+    return depth;
+}
+
 EyeGeometry bench_geometry(int width, int height) { return *scene_geometry(Projection::rectilinear, 104.0, width, height); }
 
 }  // namespace entoptic::app

@@ -8,6 +8,8 @@ namespace entoptic::app {
 
 // RGB in cd/m². Every effect of the default preset has something to do in it.
 ImageF bench_scene(int width, int height);
+// How far away it is, metres: a floor from half a metre at the bottom to 20 m at the top.
+ImageF bench_depth(int width, int height);
 // Seen under 104 degrees, as in the headset, on a flat picture.
 EyeGeometry bench_geometry(int width, int height);
 

@@ -23,7 +23,8 @@ struct Trade {
 };
 const std::vector<Trade>& trades() {
     static const std::vector<Trade> table{
-        {"glare", "wavelengths", {32, 8, 4, 3}}, {"glare", "texel_px", {1, 2, 4, 8}}, {"glare", "near_px", {8, 4, 0}}};
+        {"glare", "wavelengths", {32, 8, 4, 3}}, {"glare", "texel_px", {1, 2, 4, 8}}, {"glare", "near_px", {8, 4, 0}},
+        {"dof", "roulette", {0, 1}}};
     return table;
 }
 
@@ -67,7 +68,9 @@ public:
         : device_(device),
           o_(options),
           scene_(bench_scene(o_.error_width, o_.error_height)),
-          timed_scene_(bench_scene(o_.width, o_.height)) {}
+          timed_scene_(bench_scene(o_.width, o_.height)),
+          depth_(bench_depth(o_.error_width, o_.error_height)),
+          timed_depth_(bench_depth(o_.width, o_.height)) {}
 
     Result<std::vector<EffectRow>> run() {
         ENTOPTIC_TRY(preset, select(o_.preset));
@@ -110,7 +113,7 @@ private:
         std::vector<double> times;
         for (int i = 0; i < o_.frames + warm_up; ++i) {
             ENTOPTIC_CHECK(commands.begin());
-            ENTOPTIC_CHECK(stage->record_ingest(commands, {&timed_scene_, 1}));
+            ENTOPTIC_CHECK(stage->record_ingest(commands, {&timed_scene_, 1}, {&timed_depth_, 1}));
             stage->record(commands, steady_input(std::uint64_t(i)));
             ENTOPTIC_CHECK(commands.submit());
             ENTOPTIC_CHECK(commands.wait());
@@ -134,7 +137,7 @@ private:
     Result<PictureError> error_of(const Variant& variant) {
         ENTOPTIC_TRY(selection, alone(variant.slot, settings_of(variant)));
         ENTOPTIC_TRY(gpu, make_gpu_simulator(device_, options_for(selection)));
-        ENTOPTIC_CHECK(gpu->frame(scene_, steady_input(0), true));
+        ENTOPTIC_CHECK(gpu->frame(scene_, depth_, steady_input(0), true));
         ENTOPTIC_TRY(truth, truth_of(variant.slot));
         return compare(gpu->picture(), *truth);
     }
@@ -153,7 +156,7 @@ private:
         }
         ENTOPTIC_TRY(selection, alone(slot, finest));
         const auto reference = make_reference_simulator(options_for(selection));
-        ENTOPTIC_CHECK(reference->frame(scene_, steady_input(0), true));
+        ENTOPTIC_CHECK(reference->frame(scene_, depth_, steady_input(0), true));
         return &(truths_[slot] = reference->picture());
     }
     static std::string finest_setting(const Trade& trade, const ParameterInfo& p) {
@@ -164,7 +167,7 @@ private:
 
     gpu::Device& device_;
     const EffectBenchOptions& o_;
-    ImageF scene_, timed_scene_;
+    ImageF scene_, timed_scene_, depth_, timed_depth_;
     std::map<std::string, ImageF> truths_;
 };
 

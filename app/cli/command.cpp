@@ -57,7 +57,9 @@ int run_command_line(std::vector<std::string> arguments) {
     Action action;
     add_run(app, application, action);
     add_simulate(app, action);
+    add_stimulus(app, action);
     add_effects(app, action);
+    add_curve(app, action);
     add_status(app, action);
     add_bench(app, action);
     add_config(app, action);

@@ -16,7 +16,9 @@ using Action = std::function<Result<int>()>;
 // Each declares one subcommand. Its options live in the action, which runs after the command line was read without error.
 void add_run(CLI::App& app, const std::vector<std::string>& application, Action& action);  // `application`: what stood after `--`
 void add_simulate(CLI::App& app, Action& action);
+void add_stimulus(CLI::App& app, Action& action);
 void add_effects(CLI::App& app, Action& action);
+void add_curve(CLI::App& app, Action& action);
 void add_status(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_config(CLI::App& app, Action& action);

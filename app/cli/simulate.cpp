@@ -112,6 +112,8 @@ Result<void> plan_eye(const Options& o, Plan& plan) {
 
 Result<Selection> plan_selection(const Options& o) {
     ENTOPTIC_TRY(selection, select_effects(o.preset, o.models, o.settings, o.observer));
+    // There is no wearer here: the pupil that is given is that of the eye in the scene.
+    std::erase_if(selection.choices, [](const Choice& choice) { return choice.entry->name == "residual_pupil"; });
     if (!o.photographic) return selection;
     bool known = false;
     for (Choice& choice : selection.choices)
@@ -195,7 +197,7 @@ private:
         input.index = frames_++;
         input.eyes = {eye_at(time_s, mean)};
         last_eye_ = input.eyes[0];
-        return simulator_->frame(scene_.rgb, input, want_picture);
+        return simulator_->frame(scene_.rgb, scene_.depth, input, want_picture);
     }
     Result<void> run_still() {
         ENTOPTIC_CHECK(frame(0, 0, first_mean_, plan_.times[0] == 0));

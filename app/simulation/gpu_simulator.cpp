@@ -18,9 +18,9 @@ public:
         return simulator;
     }
     void set_adaptation(double cd_m2) override { stage_->set_adaptation(static_cast<float>(cd_m2)); }
-    Result<void> frame(const ImageF& scene, const perception::FrameInput& input, bool want_picture) override {
+    Result<void> frame(const ImageF& scene, const ImageF& depth, const perception::FrameInput& input, bool want_picture) override {
         ENTOPTIC_CHECK(commands_.begin());
-        ENTOPTIC_CHECK(stage_->record_ingest(commands_, {&scene, 1}));
+        ENTOPTIC_CHECK(stage_->record_ingest(commands_, {&scene, 1}, {&depth, depth.data.empty() ? 0u : 1u}));
         stage_->record(commands_, input);
         if (want_picture) ENTOPTIC_CHECK(stage_->record_download(commands_, 0));
         ENTOPTIC_CHECK(commands_.submit());

@@ -21,9 +21,12 @@ public:
         }
     }
     void set_adaptation(double cd_m2) override { adaptation_ = cd_m2; }
-    Result<void> frame(const ImageF& scene, const FrameInput& input, bool want_picture) override {
+    Result<void> frame(const ImageF& scene, const ImageF& depth, const FrameInput& input, bool want_picture) override {
         ReferenceFrame frame{cleaned(scene), options_.geometry, options_.display, input.eyes[0],
                              input.dt_s,     input.snap,        adaptation_,      options_.seed};
+        frame.dioptre = dioptres(depth);
+        frame.vergence_dioptre = static_cast<double>(input.vergence_dioptre);
+        frame.focus_dioptre = focus_;
         if (want_picture) measure(frame.image);
         frame.scene_white_cd_m2 = static_cast<double>(options_.display.white_cd_m2);
         const auto& choices = options_.selection.choices;
@@ -33,8 +36,8 @@ public:
         };
         // The order of Stage::record().
         std::size_t optics = 0, tone = 0;
-        while (optics < models_.size() && choices[optics].entry->slot == "adaptation") ++optics;
-        while (tone < models_.size() && choices[tone].entry->slot != "tone") ++tone;
+        while (optics < models_.size() && (choices[optics].entry->slot == "adaptation" || choices[optics].entry->slot == "pupil")) ++optics;
+        while (tone < models_.size() && choices[tone].entry->slot != "tone" && !(models_[tone] && models_[tone]->observes_retina())) ++tone;
         each(0, optics, &ReferenceModel::apply);
         each(0, models_.size(), &ReferenceModel::plan);
         if (want_picture || observes()) {
@@ -43,6 +46,7 @@ public:
         }
         if (want_picture) each(tone, models_.size(), &ReferenceModel::apply);
         adaptation_ = frame.adaptation_cd_m2;
+        focus_ = frame.focus_dioptre;
         view_.adaptation_cd_m2 = view_.target_cd_m2 = static_cast<float>(adaptation_);
         if (want_picture) picture_ = convert<float>(frame.image);
         return {};
@@ -81,6 +85,12 @@ private:
         }
         return out;
     }
+    // As Stage::record_ingest() has it.
+    static ImageD dioptres(const ImageF& depth) {
+        ImageD out = convert<double>(depth);
+        for (double& v : out.data) v = v > 0 ? std::min(1 / v, static_cast<double>(max_dioptre)) : static_cast<double>(unknown_dioptre);
+        return out;
+    }
     void measure(const ImageD& image) {
         double low = 3e38, high = 0, sum = 0, sr = 0;
         for (int y = 0; y < image.height; ++y)
@@ -99,7 +109,7 @@ private:
 
     SimulatorOptions options_;
     std::vector<std::unique_ptr<ReferenceModel>> models_;
-    double adaptation_ = 0;
+    double adaptation_ = 0, focus_ = -1;
     ImageF picture_;
     ViewOutcome view_;
 };

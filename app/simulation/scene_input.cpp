@@ -58,6 +58,15 @@ ImageF averaged(const ImageF& in, int k) {
     return out;
 }
 
+// One pixel's distance for k x k: a mean would lie where there is nothing.
+ImageF thinned(const ImageF& in, int k) {
+    if (in.data.empty() || k == 1) return in;
+    ImageF out(std::max(1, in.width / k), std::max(1, in.height / k), 1);
+    for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x) out.at(x, y, 0) = in.at(std::min(x * k + k / 2, in.width - 1), std::min(y * k + k / 2, in.height - 1), 0);
+    return out;
+}
+
 // The number in `file` if it is `prefix`, digits, `suffix`.
 std::optional<int> number_in(const std::string& file, const std::string& prefix, const std::string& suffix) {
     if (file.size() <= prefix.size() + suffix.size() || !file.starts_with(prefix) || !file.ends_with(suffix)) return std::nullopt;
@@ -91,6 +100,7 @@ Result<Scene> load_scene(const std::string& path, const SceneOptions& options) {
     ENTOPTIC_TRY(scale, choose_scale(path, options, file.white_luminance, scene.scale_source));
     scene.cd_per_unit = scale;
     scene.rgb = options.downscale > 1 ? averaged(file.rgb, options.downscale) : std::move(file.rgb);
+    scene.depth = thinned(file.depth, options.downscale);
     for (float& v : scene.rgb.data) v = static_cast<float>(static_cast<double>(v) * scale);
     return scene;
 }

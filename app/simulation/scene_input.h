@@ -18,7 +18,8 @@ struct SceneOptions {
 };
 
 struct Scene {
-    ImageF rgb;  // cd/m², 3 channels; may hold NaN, infinities, negatives
+    ImageF rgb;    // cd/m², 3 channels; may hold NaN, infinities, negatives
+    ImageF depth;  // metres from the eye, 1 channel; empty when the file has no channel Z
     double cd_per_unit = 1;
     std::string scale_source;  // "whiteLuminance of lamp.exr"
 };

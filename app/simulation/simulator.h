@@ -24,8 +24,9 @@ public:
     virtual ~Simulator() = default;
     // The eye has been adapted to this luminance before the first frame.
     virtual void set_adaptation(double cd_m2) = 0;
-    // One frame of `scene` (RGB, cd/m²). Without `want_picture` only what later frames depend on needs to be computed.
-    virtual Result<void> frame(const ImageF& scene, const perception::FrameInput& input, bool want_picture) = 0;
+    // One frame of `scene` (RGB, cd/m²); `depth` (metres) may be empty. Without `want_picture` only what later frames depend on needs to be
+    // computed.
+    virtual Result<void> frame(const ImageF& scene, const ImageF& depth, const perception::FrameInput& input, bool want_picture) = 0;
     // Of the last frame that wanted a picture: display light in cd/m², as the models left it.
     virtual ImageF picture() const = 0;
     virtual perception::ViewOutcome view() const = 0;

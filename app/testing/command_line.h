@@ -51,10 +51,10 @@ protected:
         fs::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << text;
     }
-    std::string picture(const std::string& name, const ImageF& image, std::optional<float> white = 1.0f) const {
+    std::string picture(const std::string& name, const ImageF& image, std::optional<float> white = 1.0f, const ImageF& depth = {}) const {
         ExrAttributes attributes;
         attributes.white_luminance = white;
-        const auto written = write_exr(path(name), image, attributes);
+        const auto written = write_exr(path(name), image, attributes, depth);
         if (!written) throw std::runtime_error(written.error().message);
         return path(name);
     }

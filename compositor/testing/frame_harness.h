@@ -90,7 +90,8 @@ struct Texture {
 };
 
 inline void image_barrier(gpu::Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to, std::uint32_t from_family,
-                          std::uint32_t to_family, VkAccessFlags source, VkAccessFlags destination) {
+                          std::uint32_t to_family, VkAccessFlags source, VkAccessFlags destination,
+                          VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT) {
     VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
     barrier.srcAccessMask = source;
     barrier.dstAccessMask = destination;
@@ -99,26 +100,26 @@ inline void image_barrier(gpu::Commands& commands, VkImage image, VkImageLayout 
     barrier.srcQueueFamilyIndex = from_family;
     barrier.dstQueueFamilyIndex = to_family;
     barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
     vkCmdPipelineBarrier(commands.handle(), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0,
                          nullptr, 1, &barrier);
 }
 
 // An application's part: writes `texels` (tightly packed, array slices one after another) into an image and hands it over.
 inline void write_image(gpu::Device& device, VkImage image, std::uint32_t width, std::uint32_t height, std::uint32_t slices,
-                        std::span<const std::byte> texels) {
+                        std::span<const std::byte> texels, VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT) {
     auto staging = must(gpu::Buffer::create(device, texels.size(), gpu::BufferKind::upload, "staging"));
     std::memcpy(staging.bytes().data(), texels.data(), texels.size());
     auto commands = must(gpu::Commands::create(device, "application"));
     must(commands.begin());
     image_barrier(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
-                  VK_QUEUE_FAMILY_IGNORED, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
+                  VK_QUEUE_FAMILY_IGNORED, 0, VK_ACCESS_TRANSFER_WRITE_BIT, aspect);
     VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, slices};
+    region.imageSubresource = {aspect, 0, 0, slices};
     region.imageExtent = {width, height, 1};
     vkCmdCopyBufferToImage(commands.handle(), staging.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     image_barrier(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, device.queue_family(),
-                  VK_QUEUE_FAMILY_EXTERNAL, VK_ACCESS_TRANSFER_WRITE_BIT, 0);
+                  VK_QUEUE_FAMILY_EXTERNAL, VK_ACCESS_TRANSFER_WRITE_BIT, 0, aspect);
     must(commands.submit());
     must(commands.wait());
 }

@@ -5,7 +5,8 @@
 // The paper's two 1-D passes, for research: sigma in pixels, the second pass's from the first one's lightness, Lab with a and b kept.
 
 #define LIST_BINDING 1
-#include "perception/acuity/luidolt_eq12_list.glsl"
+#include "perception/acuity/luidolt_eq12_tiles.glsl"
+#include "perception/acuity/tile_of_list.glsl"
 
 layout(local_size_x = tile_width, local_size_y = tile_height) in;
 

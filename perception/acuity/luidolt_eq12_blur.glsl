@@ -1,6 +1,7 @@
 // Shared by both kernels that blur: their bindings and what they do before and after the gathering. Include after #version.
 #define LIST_BINDING 1
-#include "perception/acuity/luidolt_eq12_list.glsl"
+#include "perception/acuity/luidolt_eq12_tiles.glsl"
+#include "perception/acuity/tile_of_list.glsl"
 
 layout(constant_id = 0) const int radius = 3;     // of the widest kernel, pixels
 

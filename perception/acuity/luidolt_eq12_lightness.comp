@@ -5,7 +5,8 @@
 // Lightness of every pixel that a blurred pixel may see, from the untouched picture (trap L18).
 
 #define LIST_BINDING 1
-#include "perception/acuity/luidolt_eq12_list.glsl"
+#include "perception/acuity/luidolt_eq12_tiles.glsl"
+#include "perception/acuity/tile_of_list.glsl"
 
 layout(local_size_x = tile_width, local_size_y = tile_height) in;
 

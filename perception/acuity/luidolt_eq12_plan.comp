@@ -22,7 +22,7 @@ layout(scalar, push_constant) uniform Push {
     uint split;                // 1: dark tiles with their surroundings inside the picture go to their own list
 } push;
 
-shared uint counts[3];
+shared uint counts[list_count];
 
 void append(uint list, uint tile, uint all) { lists[list * all + atomicAdd(counts[list], 1u)] = tile; }
 
@@ -42,7 +42,7 @@ void place(uint entry, uint all) {
 
 void main() {
     const uint i = gl_LocalInvocationID.x;
-    if (i < 3u) counts[i] = 0u;
+    if (i < list_count) counts[i] = 0u;
     barrier();
     float darkest = statistics[0].min_y;
     for (uint view = 1u; view < push.views; ++view) darkest = min(darkest, statistics[view].min_y);
@@ -51,7 +51,7 @@ void main() {
     for (uint t = i; t < looked_at; t += 256u) place(t, all);
     barrier();
     if (i != 0u) return;
-    for (uint list = 0u; list < 3u; ++list) {
+    for (uint list = 0u; list < list_count; ++list) {
         const uint n = counts[list];
         gate.dispatch[list] = GateDispatch(min(n, list_row), (n + list_row - 1u) / list_row, 1u);
     }
@@ -63,5 +63,5 @@ void main() {
     if (runs) gate.frames_run += 1u;
     else gate.frames_gated += 1u;
     // How long each list is, for the last row of workgroups.
-    for (uint list = 0u; list < 3u; ++list) lists[3u * all + list] = counts[list];
+    for (uint list = 0u; list < list_count; ++list) lists[list_count * all + list] = counts[list];
 }

@@ -59,6 +59,7 @@ public:
         parameters_changed();
     }
     bool is_identity() const override { return params_.strength <= 0; }
+    bool obeys_residual_law() const override { return params_.photographic <= 0.5f && person() == wearer(); }
 
 private:
     GlareSetup setup() override;
@@ -149,7 +150,7 @@ GlareSetup ClosedForm::setup() {
     const bool differ = !(person() == wearer()), photographic = params_.photographic > 0.5f;
     GlareSetup setup;
     setup.kernels = {own, wearers};
-    if (differ) setup.kernels.push_back(own + wearers * glm::dvec3(-1));
+    if (differ) setup.kernels.push_back(own);
     setup.terms = observer_terms(photographic, params_.rescatter, 1, differ ? std::optional(2u) : std::nullopt);
     if (params_.emission_spectra > 0.5f && !photographic) use_emission_spectra(setup, straylight(person(), white, waves));
     setup.texel_px = params_.texel_px;

@@ -36,12 +36,10 @@ public:
                 colour_[c] += w.weight[c] * (1 + static_cast<double>(p.straylight_colour) * (1 - std::min(eye.pigment / 1.2, 1.0)) * (std::pow(575 / w.nm, 4) - 1));
         const double norm = luminance(colour_);
         for (double& c : colour_) c /= norm;
-        // Beyond a degree, particles and a pupil of 4 mm take their light from the straylight.
-        const double waves = luminance(energy([&](double t) { return wave_optics(t, 4, false); }, degree, pi / 2));
-        left_ = std::max(1 - waves / energy([&](double t) { return Rgb{straylight(t)}; }, degree, pi)[0], 0.0);
+        left_ = std::max(1 - luminance(wave_optics_beyond_a_degree()) / energy([&](double t) { return Rgb{straylight(t)}; }, degree, pi)[0], 0.0);
     }
     Rgb operator()(double theta) const {
-        Rgb value = wave_optics(theta, pupil_mm_, true);
+        Rgb value = wave_optics(theta);
         for (std::size_t c = 0; c < 3; ++c) value[c] += left_ * straylight(theta) * colour_[c];
         return value;
     }
@@ -53,13 +51,26 @@ private:
         const double veil = 10 / std::pow(deg, 3) + (5 / (deg * deg) + 0.1 * eye_.pigment / deg) * a + 0.0025 * eye_.pigment;
         return veil * (1 + (eye_.factor - 1) * smooth(std::log10(deg / 0.1))) * smooth((110 - theta / degree) / 10);
     }
-    Rgb wave_optics(double theta, double pupil_mm, bool lens) const {
-        const double inner = std::min(theta, pi / 2), fibres = std::clamp((pupil_mm - 1.9) / 3, 0.0, 1.0) * 0.033 * static_cast<double>(p_.lenticular_halo);
+    Rgb wave_optics(double theta) const {
+        const double inner = std::min(theta, pi / 2), fibres = std::clamp((pupil_mm_ - 1.9) / 3, 0.0, 1.0) * 0.033 * static_cast<double>(p_.lenticular_halo);
         Rgb sum{};
         for (const Wave& w : waves_) {
-            double value = (1 - covered_) * static_cast<double>(p_.diffraction) * aperture_ring(pupil_mm * 1e3, w.nm * 1e-3, inner, 0) +
-                           covered_ * disc(static_cast<double>(p_.particle_diameter_um), w.nm * 1e-3, inner);
-            if (lens) value += fibres * 436.9 * 568 / w.nm * std::exp(-19.75 * std::pow(theta / degree - 3 * w.nm / 568, 2));
+            const double value = (1 - covered_) * static_cast<double>(p_.diffraction) * aperture_ring(pupil_mm_ * 1e3, w.nm * 1e-3, inner, 0) +
+                                 covered_ * disc(static_cast<double>(p_.particle_diameter_um), w.nm * 1e-3, inner) +
+                                 fibres * 436.9 * 568 / w.nm * std::exp(-19.75 * std::pow(theta / degree - 3 * w.nm / 568, 2));
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += w.weight[c] * value;
+        }
+        return sum;
+    }
+    // Particles and a pupil of 4 mm take their light from the straylight. Rayleigh 1881: J0^2 + J1^2 is outside an angle; 2/(pi x) for a
+    // pupil's many rings.
+    Rgb wave_optics_beyond_a_degree() const {
+        Rgb sum{};
+        for (const Wave& w : waves_) {
+            const auto x = [&](double um) { return pi * um * std::sin(degree) / (w.nm * 1e-3); };
+            const double particles = x(static_cast<double>(p_.particle_diameter_um));
+            const double value = covered_ * (std::pow(std::cyl_bessel_j(0.0, particles), 2) + std::pow(std::cyl_bessel_j(1.0, particles), 2)) +
+                                 (1 - covered_) * static_cast<double>(p_.diffraction) * 2 / (pi * x(4000));
             for (std::size_t c = 0; c < 3; ++c) sum[c] += w.weight[c] * value;
         }
         return sum;
@@ -73,7 +84,7 @@ private:
 };
 
 Kernel make_kernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm, double pixel_rad) {
-    const EyeKernel one(p, eye, pupil_mm);
+    const Kernel one{EyeKernel(p, eye, pupil_mm)};
     const double scale = static_cast<double>(p.angle_scale);
     const auto scaled = [&](double theta) {
         Rgb value = one(theta / scale);
@@ -100,10 +111,22 @@ public:
         const bool differ = person.age != wearer.age || person.pigment != wearer.pigment || person.factor != wearer.factor;
         const Scatter scatter(frame.geometry);
         const double pupil_mm = static_cast<double>(frame.eye.pupil_diameter_mm);
-        const Kernel of_person = make_kernel(p, person, pupil_mm, scatter.smallest_step());
-        const Kernel of_wearer = differ ? make_kernel(p, wearer, pupil_mm, scatter.smallest_step()) : of_person;
-        frame.image = seen(frame.image, scatter, of_person, of_wearer, differ, frame.scene_white_cd_m2, static_cast<double>(p.rescatter), p.photographic > 0.5f);
+        const double pixel_rad = scatter.smallest_step();
+        if (!person_ || std::memcmp(&p, &kept_params_, sizeof p) != 0 || pupil_mm != kept_pupil_mm_ || pixel_rad != kept_pixel_rad_) {
+            person_ = make_kernel(p, person, pupil_mm, pixel_rad);
+            wearer_ = differ ? make_kernel(p, wearer, pupil_mm, pixel_rad) : *person_;
+            kept_params_ = p;
+            kept_pupil_mm_ = pupil_mm;
+            kept_pixel_rad_ = pixel_rad;
+        }
+        frame.image = seen(frame.image, scatter, *person_, *wearer_, differ, frame.scene_white_cd_m2, static_cast<double>(p.rescatter), p.photographic > 0.5f);
     }
+
+private:
+    // The tables take a second; the last ones are kept.
+    std::optional<Kernel> person_, wearer_;
+    ClosedFormParams kept_params_{};
+    double kept_pupil_mm_ = 0, kept_pixel_rad_ = 0;
 };
 
 }  // namespace

@@ -64,10 +64,13 @@ glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from
     return sum;
 }
 
-std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> difference) {
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> person) {
     if (photographic) return {{source_scene, 0}};
     std::vector<GlareTerm> terms = {{source_excess, 0}};
-    if (difference) terms.push_back({source_displayed, *difference, 1, false});
+    if (person) {
+        terms.push_back({source_displayed, *person, 1, false});
+        terms.push_back({source_displayed, wearer, -1, false});
+    }
     if (rescatter > 0) terms.push_back({source_drawn, wearer, -rescatter, false});
     return terms;
 }

@@ -62,8 +62,9 @@ struct GlareTerm {
 // own eye already scatters what the panel sends, and what is left is
 //   the light that the panel cannot send, scattered by the person's eye (kernel 0),
 //   less what the wearer's eye (`wearer`) scatters of what this draws: `rescatter` of it,
-//   and, where person and wearer differ, the displayed light scattered by the difference of both (`difference`).
-std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> difference);
+//   and, where they differ, the displayed light scattered by the person's eye (`person`, again) less that scattered by the wearer's.
+// Only kernel 0 has a near field.
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> person);
 
 struct GlareSetup {
     std::vector<RadialProfile> kernels;

@@ -71,10 +71,10 @@ public:
         : stage_(value(Stage::create(device(), {std::move(views), display, std::move(selection), 1}))),
           commands_(value(gpu::Commands::create(device(), "test"))) {}
 
-    // One frame: ingest, statistics, models. Returns what comes out of each view.
-    std::vector<ImageF> run(const std::vector<ImageF>& pictures, const FrameInput& input) {
+    // One frame: ingest, statistics, models. Returns what comes out of each view. `depths` as in Stage::record_ingest(), metres.
+    std::vector<ImageF> run(const std::vector<ImageF>& pictures, const FrameInput& input, const std::vector<ImageF>& depths = {}) {
         check(commands_.begin());
-        check(stage_->record_ingest(commands_, pictures));
+        check(stage_->record_ingest(commands_, pictures, depths));
         stage_->record(commands_, input);
         for (std::uint32_t v = 0; v < stage_->views(); ++v) check(stage_->record_download(commands_, v));
         check(commands_.submit());
@@ -85,6 +85,9 @@ public:
         return out;
     }
     ImageF run(const ImageF& picture, const FrameInput& input) { return run(std::vector<ImageF>{picture}, input)[0]; }
+    ImageF run(const ImageF& picture, const FrameInput& input, const ImageF& depth) {
+        return run(std::vector<ImageF>{picture}, input, std::vector<ImageF>{depth})[0];
+    }
 
     Stage& stage() { return *stage_; }
     gpu::Commands& commands() { return commands_; }   // stage_times() of the last frame

@@ -2,6 +2,7 @@
 #include "perception/tone/tone.h"
 
 #include "perception/tone/key_reinhard.comp.h"
+#include "perception/tone/key_reinhard_plan.comp.h"
 
 namespace entoptic::perception {
 namespace {
@@ -17,17 +18,28 @@ struct Push {
     uint pixels;
     float white_cd_m2, black_cd_m2;
 };
+struct PlanPush {
+    KeyReinhardParams params;
+    float white_cd_m2, black_cd_m2;
+};
 
-class KeyReinhard final : public Model {
+class KeyReinhard final : public Model, public PlansTone {
 public:
     static Result<std::unique_ptr<Model>> create(const ModelContext& context) {
         auto model = std::make_unique<KeyReinhard>();
         ENTOPTIC_TRY(kernel, gpu::Kernel::create(context.device, {"tone.key_reinhard", key_reinhard_comp_spv,
                                                                  {gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer}, sizeof(Push), {}}));
         model->kernel_ = std::move(kernel);
+        ENTOPTIC_TRY(plan, gpu::Kernel::create(context.device, {"tone.key_reinhard.plan", key_reinhard_plan_comp_spv,
+                                                               {gpu::BindingKind::storage_buffer}, sizeof(PlanPush), {}}));
+        model->plan_ = std::move(plan);
         return model;
     }
     void set_parameters(std::span<const float> values) override { params_ = {values[0], values[1]}; }
+    Result<void> plan(StageIo& io) override {
+        io.commands.dispatch(plan_, {io.state}, PlanPush{params_, io.display.white_cd_m2, io.display.black_cd_m2}, {io.views, 1, 1});
+        return {};
+    }
     Result<void> record(StageIo& io) override {
         const uint pixels = io.width * io.height;
         const Push push{params_, pixels, io.display.white_cd_m2, io.display.black_cd_m2};
@@ -36,7 +48,7 @@ public:
     }
 
 private:
-    gpu::Kernel kernel_;
+    gpu::Kernel kernel_, plan_;
     KeyReinhardParams params_{};
 };
 

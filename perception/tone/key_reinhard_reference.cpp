@@ -25,6 +25,14 @@ double saturation_in_gamut(const double (&colour)[3], double grey) {
 
 class KeyReinhardReference final : public ReferenceModel {
 public:
+    void plan(ReferenceFrame& frame, std::span<const float> parameters) override {
+        const double black = static_cast<double>(frame.display.black_cd_m2), white = static_cast<double>(frame.display.white_cd_m2);
+        const double a = std::max(frame.adaptation_cd_m2, 1e-6), scale = static_cast<double>(parameters[0]);
+        const bool printed = parameters[1] > 0.5f;
+        frame.displayed = [=](double y) { return black + (white - black) * display_luminance(y, a, scale, printed); };
+        frame.exposure = frame.displayed(a) / a;
+        frame.scene_white_cd_m2 = white / frame.exposure;
+    }
     void apply(ReferenceFrame& frame, std::span<const float> parameters) override {
         const double black = static_cast<double>(frame.display.black_cd_m2), white = static_cast<double>(frame.display.white_cd_m2);
         for (std::size_t i = 0; i < frame.image.data.size(); i += 3) {

@@ -45,7 +45,9 @@ Outcome check_rectangle(const XrRect2Di& rect, const XrSwapchainCreateInfo& info
                  rect.extent.width, rect.extent.height, rect.offset.x, rect.offset.y, info.width, info.height);
 }
 
-Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& given, SubImage& image) {
+enum class Holds { colour, depth };
+
+Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& given, Holds holds, SubImage& image) {
     std::shared_ptr<Swapchain> swapchain;
     ENTOPTIC_XR_TRY(find(given.swapchain, swapchain));
     if (swapchain->session() != context.session) return invalid("the layer's swapchain belongs to another session");
@@ -54,8 +56,11 @@ Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& giv
         return invalid("imageArrayIndex {} is beyond the swapchain's {} slices", given.imageArrayIndex, info.arraySize);
     }
     ENTOPTIC_XR_TRY(check_rectangle(given.imageRect, info));
-    if ((info.usageFlags & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0) {
-        return error(XR_ERROR_LAYER_INVALID, "a depth swapchain cannot be shown as a layer");
+    const bool depth = (info.usageFlags & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+    if (depth && holds == Holds::colour) return error(XR_ERROR_LAYER_INVALID, "a depth swapchain cannot be shown as a layer");
+    if (!depth && holds == Holds::depth) {
+        return error(XR_ERROR_LAYER_INVALID,
+                     "a layer's depth needs a swapchain made with XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT");
     }
     ENTOPTIC_XR_TRY(swapchain->take_for_layer(image.image_index));
     image.swapchain = swapchain->id();
@@ -94,6 +99,25 @@ Outcome resolve_fov(const XrFovf& given, LayerView& view) {
     return XR_SUCCESS;
 }
 
+// XR_KHR_composition_layer_depth, "Member Descriptions" of XrCompositionLayerDepthInfoKHR. Written so that NaN fails.
+Outcome resolve_depth(const Context& context, const void* chain, LayerDepth& depth) {
+    if (!context.session->instance().enabled(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) return XR_SUCCESS;
+    const auto* given = chained<XrCompositionLayerDepthInfoKHR>(chain, XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR);
+    if (!given) return XR_SUCCESS;
+    if (!(given->minDepth >= 0 && given->maxDepth <= 1 && given->minDepth < given->maxDepth)) {
+        return invalid("minDepth {} must be less than maxDepth {}, both within 0 and 1", given->minDepth, given->maxDepth);
+    }
+    if (!(given->nearZ > 0 && given->farZ > 0 && given->nearZ != given->farZ)) {
+        return invalid("nearZ {} and farZ {} must be positive distances in metres and differ", given->nearZ, given->farZ);
+    }
+    ENTOPTIC_XR_TRY(resolve_sub_image(context, given->subImage, Holds::depth, depth.image));
+    depth.min_depth = given->minDepth;
+    depth.max_depth = given->maxDepth;
+    depth.near_z_m = given->nearZ;
+    depth.far_z_m = given->farZ;
+    return XR_SUCCESS;
+}
+
 Outcome resolve_projection(const Context& context, const XrCompositionLayerProjection& given, Layer& layer) {
     layer.kind = LayerKind::projection;
     if (given.viewCount != eye_count) return invalid("the projection layer has {} views; it must have {}", given.viewCount, eye_count);
@@ -102,7 +126,8 @@ Outcome resolve_projection(const Context& context, const XrCompositionLayerProje
         const XrCompositionLayerProjectionView& view = given.views[eye];
         ENTOPTIC_XR_TRY(require(&view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, "a projection view"));
         ENTOPTIC_XR_TRY(check_pose(view.pose));
-        ENTOPTIC_XR_TRY(resolve_sub_image(context, view.subImage, layer.views[eye].image));
+        ENTOPTIC_XR_TRY(resolve_sub_image(context, view.subImage, Holds::colour, layer.views[eye].image));
+        ENTOPTIC_XR_TRY(resolve_depth(context, view.next, layer.views[eye].depth));
         ENTOPTIC_XR_TRY(resolve_fov(view.fov, layer.views[eye]));
         layer.views[eye].space_from_view = to_pose(view.pose);
     }
@@ -128,7 +153,7 @@ Outcome resolve_quad(const Context& context, const XrCompositionLayerQuad& given
     if (!std::isfinite(given.size.width) || !std::isfinite(given.size.height) || given.size.width < 0 || given.size.height < 0) {
         return invalid("the quad's size {} x {} m must be finite and not negative", given.size.width, given.size.height);
     }
-    ENTOPTIC_XR_TRY(resolve_sub_image(context, given.subImage, layer.views[0].image));
+    ENTOPTIC_XR_TRY(resolve_sub_image(context, given.subImage, Holds::colour, layer.views[0].image));
     layer.views[1].image = layer.views[0].image;
     layer.space_from_quad = to_pose(given.pose);
     layer.quad_width_m = given.size.width;

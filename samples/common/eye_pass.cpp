@@ -4,9 +4,9 @@
 
 namespace samples {
 
-static VkAttachmentDescription attachment(VkFormat format, VkSampleCountFlagBits samples, VkAttachmentLoadOp load,
-                                          VkAttachmentStoreOp store, VkImageLayout layout) {
-    VkAttachmentDescription description{};
+static VkAttachmentDescription2 attachment(VkFormat format, VkSampleCountFlagBits samples, VkAttachmentLoadOp load,
+                                           VkAttachmentStoreOp store, VkImageLayout layout) {
+    VkAttachmentDescription2 description{VK_STRUCTURE_TYPE_ATTACHMENT_DESCRIPTION_2};
     description.format = format;
     description.samples = samples;
     description.loadOp = load;
@@ -18,27 +18,36 @@ static VkAttachmentDescription attachment(VkFormat format, VkSampleCountFlagBits
     return description;
 }
 
-// Attachments: 0 the image that is kept; then depth, if any; then the multisample image, if any.
+static VkAttachmentReference2 reference(std::size_t attachment, VkImageLayout layout, VkImageAspectFlags aspect) {
+    return {VK_STRUCTURE_TYPE_ATTACHMENT_REFERENCE_2, nullptr, static_cast<std::uint32_t>(attachment), layout, aspect};
+}
+
+// Attachments: 0 the image that is kept; then depth, if any; then the multisample image, if any; then the depth that it is resolved to.
 OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
     constexpr auto colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     constexpr auto depth_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    constexpr auto clear = VK_ATTACHMENT_LOAD_OP_CLEAR, ignore = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    constexpr auto store = VK_ATTACHMENT_STORE_OP_STORE, drop = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     const bool resolves = format.samples != VK_SAMPLE_COUNT_1_BIT;
-    std::vector<VkAttachmentDescription> attachments;
-    attachments.push_back(attachment(format.colour, VK_SAMPLE_COUNT_1_BIT,
-                                     resolves ? VK_ATTACHMENT_LOAD_OP_DONT_CARE : VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_STORE,
-                                     colour_layout));
-    VkAttachmentReference kept{0, colour_layout};
-    VkAttachmentReference depth{1, depth_layout};
+    std::vector<VkAttachmentDescription2> attachments;
+    attachments.push_back(attachment(format.colour, VK_SAMPLE_COUNT_1_BIT, resolves ? ignore : clear, store, colour_layout));
+    const auto kept = reference(0, colour_layout, VK_IMAGE_ASPECT_COLOR_BIT);
+    const auto depth = reference(1, depth_layout, VK_IMAGE_ASPECT_DEPTH_BIT);
     if (format.depth) {
         attachments.push_back(
-            attachment(VK_FORMAT_D32_SFLOAT, format.samples, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_DONT_CARE, depth_layout));
+            attachment(VK_FORMAT_D32_SFLOAT, format.samples, clear, format.keep_depth && !resolves ? store : drop, depth_layout));
     }
-    VkAttachmentReference multisample{static_cast<std::uint32_t>(attachments.size()), colour_layout};
-    if (resolves) {
-        attachments.push_back(
-            attachment(format.colour, format.samples, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_DONT_CARE, colour_layout));
+    const auto multisample = reference(attachments.size(), colour_layout, VK_IMAGE_ASPECT_COLOR_BIT);
+    if (resolves) { attachments.push_back(attachment(format.colour, format.samples, clear, drop, colour_layout)); }
+    const auto kept_depth = reference(attachments.size(), depth_layout, VK_IMAGE_ASPECT_DEPTH_BIT);
+    VkSubpassDescriptionDepthStencilResolve depth_resolve{VK_STRUCTURE_TYPE_SUBPASS_DESCRIPTION_DEPTH_STENCIL_RESOLVE};
+    depth_resolve.depthResolveMode = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
+    depth_resolve.pDepthStencilResolveAttachment = &kept_depth;
+    if (resolves && format.keep_depth) {
+        attachments.push_back(attachment(VK_FORMAT_D32_SFLOAT, VK_SAMPLE_COUNT_1_BIT, ignore, store, depth_layout));
     }
-    VkSubpassDescription subpass{};
+    VkSubpassDescription2 subpass{VK_STRUCTURE_TYPE_SUBPASS_DESCRIPTION_2};
+    subpass.pNext = resolves && format.keep_depth ? &depth_resolve : nullptr;
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = resolves ? &multisample : &kept;
@@ -47,7 +56,7 @@ OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
 
     // The depth and multisample images are shared by successive pictures of an eye: the next must not begin to write
     // before the last has finished.
-    VkSubpassDependency dependency{};
+    VkSubpassDependency2 dependency{VK_STRUCTURE_TYPE_SUBPASS_DEPENDENCY_2};
     dependency.srcSubpass = VK_SUBPASS_EXTERNAL;
     dependency.dstSubpass = 0;
     dependency.srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -55,7 +64,7 @@ OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
     dependency.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
     dependency.dstAccessMask = dependency.srcAccessMask | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
 
-    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    VkRenderPassCreateInfo2 info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO_2};
     info.attachmentCount = static_cast<std::uint32_t>(attachments.size());
     info.pAttachments = attachments.data();
     info.subpassCount = 1;
@@ -63,7 +72,7 @@ OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
     info.dependencyCount = 1;
     info.pDependencies = &dependency;
     VkRenderPass render_pass = VK_NULL_HANDLE;
-    check_vk(vkCreateRenderPass(gpu.device(), &info, nullptr, &render_pass), "vkCreateRenderPass");
+    check_vk(vkCreateRenderPass2(gpu.device(), &info, nullptr, &render_pass), "vkCreateRenderPass2");
     return {gpu.device(), render_pass};
 }
 
@@ -81,28 +90,34 @@ static OwnedFramebuffer create_framebuffer(const Gpu& gpu, VkRenderPass render_p
     return {gpu.device(), framebuffer};
 }
 
-EyePass::EyePass(const Gpu& gpu, const PassFormat& format, VkRenderPass render_pass, VkExtent2D extent, const std::vector<VkImage>& images)
+EyePass::EyePass(const Gpu& gpu, const PassFormat& format, VkRenderPass render_pass, VkExtent2D extent, const std::vector<VkImage>& images,
+                 const std::vector<VkImage>& depth_images)
     : gpu_(&gpu), format_(format), render_pass_(render_pass), extent_(extent) {
-    std::vector<VkImageView> shared_views;
-    if (format.depth) {
+    const bool resolves = format.samples != VK_SAMPLE_COUNT_1_BIT;
+    if (format.depth && (resolves || !format.keep_depth)) {
         depth_ = create_image(gpu, {.format = VK_FORMAT_D32_SFLOAT,
                                     .extent = extent,
                                     .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
                                     .samples = format.samples});
-        shared_views.push_back(depth_.view.get());
     }
-    if (format.samples != VK_SAMPLE_COUNT_1_BIT) {
+    if (resolves) {
         multisample_ = create_image(gpu, {.format = format.colour,
                                           .extent = extent,
                                           .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT,
                                           .samples = format.samples});
-        shared_views.push_back(multisample_.view.get());
+    }
+    if (format.keep_depth) {
+        for (VkImage image : depth_images) { depth_views_.push_back(create_image_view(gpu, image, VK_FORMAT_D32_SFLOAT, 1)); }
     }
     for (VkImage image : images) {
         views_.push_back(create_image_view(gpu, image, format.colour, 1));
-        std::vector<VkImageView> attached{views_.back().get()};
-        attached.insert(attached.end(), shared_views.begin(), shared_views.end());
-        framebuffers_.push_back(create_framebuffer(gpu, render_pass, extent, attached));
+        for (std::size_t depth = 0; depth < (format.keep_depth ? depth_views_.size() : 1); ++depth) {
+            std::vector<VkImageView> attached{views_.back().get()};
+            if (format.depth) { attached.push_back(depth_.view.get() != VK_NULL_HANDLE ? depth_.view.get() : depth_views_[depth].get()); }
+            if (resolves) { attached.push_back(multisample_.view.get()); }
+            if (resolves && format.keep_depth) { attached.push_back(depth_views_[depth].get()); }
+            framebuffers_.push_back(create_framebuffer(gpu, render_pass, extent, attached));
+        }
     }
     VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     allocate.commandPool = gpu.command_pool();
@@ -121,7 +136,7 @@ void EyePass::wait() const {
     check_vk(vkWaitForFences(gpu_->device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
-void EyePass::draw(std::uint32_t index, const std::function<void(VkCommandBuffer)>& record) const {
+void EyePass::draw(std::uint32_t index, std::uint32_t depth, const std::function<void(VkCommandBuffer)>& record) const {
     wait();
     const VkFence fence = done_.get();
     check_vk(vkResetFences(gpu_->device(), 1, &fence), "vkResetFences");
@@ -134,7 +149,7 @@ void EyePass::draw(std::uint32_t index, const std::function<void(VkCommandBuffer
     const std::array clears{black, format_.depth ? far : black, black};
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     pass.renderPass = render_pass_;
-    pass.framebuffer = framebuffers_.at(index).get();
+    pass.framebuffer = framebuffers_.at(format_.keep_depth ? index * depth_views_.size() + depth : index).get();
     pass.renderArea = {{0, 0}, extent_};
     pass.clearValueCount = static_cast<std::uint32_t>(clears.size());
     pass.pClearValues = clears.data();

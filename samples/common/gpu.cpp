@@ -225,6 +225,7 @@ struct LayoutChange {
     VkImageLayout from, to;
     VkAccessFlags from_access, to_access;
     VkPipelineStageFlags from_stage, to_stage;
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
 };
 
 }  // namespace
@@ -238,7 +239,7 @@ static void change_layout(VkCommandBuffer commands, VkImage image, std::uint32_t
     barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, levels, 0, 1};
+    barrier.subresourceRange = {change.aspect, 0, levels, 0, 1};
     vkCmdPipelineBarrier(commands, change.from_stage, change.to_stage, 0, 0, nullptr, 0, nullptr, 1, &barrier);
 }
 
@@ -284,17 +285,15 @@ Image create_texture(const Gpu& gpu, VkFormat format, VkExtent2D extent, std::sp
     return image;
 }
 
-std::vector<std::byte> read_back(const Gpu& gpu, VkImage image, VkExtent2D extent, std::size_t bytes_per_pixel) {
+static std::vector<std::byte> read_image(const Gpu& gpu, VkImage image, VkExtent2D extent, std::size_t bytes_per_pixel,
+                                         const LayoutChange& to_source) {
     const std::size_t size = std::size_t{extent.width} * extent.height * bytes_per_pixel;
     const Buffer staging = create_buffer(gpu, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageSubresource = {to_source.aspect, 0, 0, 1};
     copy.imageExtent = {extent.width, extent.height, 1};
-    const LayoutChange to_source{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,          VK_ACCESS_TRANSFER_READ_BIT,
-                                 VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT};
-    const LayoutChange back{to_source.to,          to_source.from,     to_source.to_access,
-                            to_source.from_access, to_source.to_stage, to_source.from_stage};
+    const LayoutChange back{to_source.to,       to_source.from,       to_source.to_access, to_source.from_access,
+                            to_source.to_stage, to_source.from_stage, to_source.aspect};
     gpu.submit_and_wait([&](VkCommandBuffer commands) {
         change_layout(commands, image, 1, to_source);
         vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.buffer.get(), 1, &copy);
@@ -303,6 +302,23 @@ std::vector<std::byte> read_back(const Gpu& gpu, VkImage image, VkExtent2D exten
     std::vector<std::byte> bytes(size);
     std::memcpy(bytes.data(), staging.mapped, size);
     return bytes;
+}
+
+std::vector<std::byte> read_back(const Gpu& gpu, VkImage image, VkExtent2D extent, std::size_t bytes_per_pixel) {
+    return read_image(gpu, image, extent, bytes_per_pixel,
+                      {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                       VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT});
+}
+
+std::vector<float> read_back_depth(const Gpu& gpu, VkImage image, VkExtent2D extent) {
+    const std::vector<std::byte> bytes =
+        read_image(gpu, image, extent, sizeof(float),
+                   {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT,
+                    VK_PIPELINE_STAGE_TRANSFER_BIT, VK_IMAGE_ASPECT_DEPTH_BIT});
+    std::vector<float> values(bytes.size() / sizeof(float));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
 }
 
 OwnedSampler create_sampler(const Gpu& gpu, VkFilter filter, VkSamplerAddressMode u, VkSamplerAddressMode v) {

@@ -138,6 +138,8 @@ Image create_texture(const Gpu& gpu, VkFormat format, VkExtent2D extent, std::sp
 
 // The pixels of mip 0 of an image in COLOR_ATTACHMENT_OPTIMAL, tightly packed; the image ends in that layout again.
 std::vector<std::byte> read_back(const Gpu& gpu, VkImage image, VkExtent2D extent, std::size_t bytes_per_pixel);
+// The same for a D32_SFLOAT image in DEPTH_STENCIL_ATTACHMENT_OPTIMAL.
+std::vector<float> read_back_depth(const Gpu& gpu, VkImage image, VkExtent2D extent);
 
 OwnedSampler create_sampler(const Gpu& gpu, VkFilter filter, VkSamplerAddressMode u, VkSamplerAddressMode v);
 

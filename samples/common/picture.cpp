@@ -164,6 +164,11 @@ void write_radiance_map(const std::string& path, const Picture& picture, float w
             auto* first = reinterpret_cast<char*>(const_cast<float*>(&picture.pixels[0][i]));
             frame.insert(name, Imf::Slice(Imf::FLOAT, first, sizeof(glm::vec3), sizeof(glm::vec3) * picture.width));
         }
+        if (!picture.distances.empty()) {
+            header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+            auto* first = reinterpret_cast<char*>(const_cast<float*>(picture.distances.data()));
+            frame.insert("Z", Imf::Slice(Imf::FLOAT, first, sizeof(float), sizeof(float) * picture.width));
+        }
         Imf::OutputFile file(path.c_str(), header);
         file.setFrameBuffer(frame);
         file.writePixels(static_cast<int>(picture.height));

@@ -14,6 +14,7 @@ namespace samples {
 struct Picture {
     std::uint32_t width = 0, height = 0;
     std::vector<glm::vec3> pixels;
+    std::vector<float> distances;  // metres from the eye; empty: not known
 };
 
 // What a file says beside its pixels.
@@ -29,7 +30,7 @@ struct RadianceMap {
 // `largest_side`.
 RadianceMap read_radiance_map(const std::string& path, std::uint32_t largest_side);
 
-// Writes 32-bit float RGB. `white_luminance` is the attribute of that name, cd/m² of RGB (1, 1, 1).
+// Writes 32-bit float RGB, and the distances as channel Z. `white_luminance` is the attribute of that name, cd/m² of RGB (1, 1, 1).
 void write_radiance_map(const std::string& path, const Picture& picture, float white_luminance);
 
 // Writes 8-bit sRGB: values divided by `white`, a soft shoulder above 0.8. For looking, not for measuring.

@@ -26,6 +26,7 @@ volatile std::sig_atomic_t end_requested = 0;
 
 struct Swapchain {
     XrSwapchain handle = XR_NULL_HANDLE;
+    XrSwapchain depth = XR_NULL_HANDLE;  // null: not submitted
     EyeImages images;
 };
 
@@ -47,7 +48,7 @@ struct XrApp::State {
     XrAppOptions options;
     XrInstance instance = XR_NULL_HANDLE;
     XrSystemId system = XR_NULL_SYSTEM_ID;
-    bool luminance_enabled = false;
+    bool luminance_enabled = false, depth_enabled = false;
     std::unique_ptr<Gpu> gpu;
     XrSession session = XR_NULL_HANDLE;
     XrSpace local_space = XR_NULL_HANDLE;
@@ -68,7 +69,10 @@ struct XrApp::State {
     void create_gpu();
     void create_session();
     void create_swapchains();
+    std::vector<std::int64_t> offered_formats() const;
     VkFormat choose_format() const;
+    std::vector<VkImage> create_swapchain(XrSwapchainCreateInfo& info, VkFormat format, XrSwapchainUsageFlags usage, XrSwapchain& handle) const;
+    std::uint32_t acquire(XrSwapchain swapchain) const;
     void create_actions();
     void suggest(const char* profile, const std::vector<std::pair<XrAction, const char*>>& bindings) const;
     XrPath path(const char* text) const;
@@ -78,7 +82,8 @@ struct XrApp::State {
     void request_session_end();
     void run_frame(Scene& scene);
     bool locate_views(XrTime time, std::vector<XrView>& views) const;
-    void draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views);
+    void draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views,
+                    std::vector<XrCompositionLayerDepthInfoKHR>& depths);
 };
 
 // ---- instance and device ---------------------------------------------------------------------------------------------------------
@@ -121,6 +126,8 @@ void XrApp::State::create_instance() {
     std::vector<const char*> enabled{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     luminance_enabled = options.scene_luminance && has_extension(offered, XR_ENTOPTICX_SCENE_LUMINANCE_EXTENSION_NAME);
     if (luminance_enabled) { enabled.push_back(XR_ENTOPTICX_SCENE_LUMINANCE_EXTENSION_NAME); }
+    depth_enabled = options.far_m > 0 && has_extension(offered, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+    if (depth_enabled) { enabled.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO};
     options.application.copy(info.applicationInfo.applicationName, XR_MAX_APPLICATION_NAME_SIZE - 1);
     info.applicationInfo.applicationVersion = 1;
@@ -224,17 +231,37 @@ void XrApp::State::create_session() {
     check(xrCreateReferenceSpace(session, &space, &local_space), "xrCreateReferenceSpace");
 }
 
-VkFormat XrApp::State::choose_format() const {
+std::vector<std::int64_t> XrApp::State::offered_formats() const {
     std::uint32_t count = 0;
     check(xrEnumerateSwapchainFormats(session, 0, &count, nullptr), "xrEnumerateSwapchainFormats");
     std::vector<std::int64_t> offered(count);
     check(xrEnumerateSwapchainFormats(session, count, &count, offered.data()), "xrEnumerateSwapchainFormats");
+    return offered;
+}
+
+VkFormat XrApp::State::choose_format() const {
+    const std::vector<std::int64_t> offered = offered_formats();
     for (VkFormat format : options.formats) {
         if (std::find(offered.begin(), offered.end(), static_cast<std::int64_t>(format)) != offered.end()) { return format; }
     }
     throw Failure(ExitCode::missing,
                   "the OpenXR runtime offers no floating-point swapchain (R16G16B16A16_SFLOAT), without which "
                   "a scene cannot keep its luminance");
+}
+
+std::vector<VkImage> XrApp::State::create_swapchain(XrSwapchainCreateInfo& info, VkFormat format, XrSwapchainUsageFlags usage,
+                                                    XrSwapchain& handle) const {
+    info.format = format;
+    info.usageFlags = usage;
+    check(xrCreateSwapchain(session, &info, &handle), "xrCreateSwapchain");
+    std::uint32_t count = 0;
+    check(xrEnumerateSwapchainImages(handle, 0, &count, nullptr), "xrEnumerateSwapchainImages");
+    std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
+    check(xrEnumerateSwapchainImages(handle, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
+          "xrEnumerateSwapchainImages");
+    std::vector<VkImage> handles;
+    for (const auto& image : images) { handles.push_back(image.image); }
+    return handles;
 }
 
 void XrApp::State::create_swapchains() {
@@ -244,10 +271,10 @@ void XrApp::State::create_swapchains() {
     std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW});
     check(xrEnumerateViewConfigurationViews(instance, system, stereo, count, &count, views.data()), "xrEnumerateViewConfigurationViews");
     const VkFormat format = choose_format();
+    const std::vector<std::int64_t> offered = offered_formats();
+    depth_enabled = depth_enabled && std::find(offered.begin(), offered.end(), VK_FORMAT_D32_SFLOAT) != offered.end();
     for (const XrViewConfigurationView& view : views) {
         XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
-        info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
-        info.format = format;
         info.sampleCount = 1;
         info.width = view.recommendedImageRectWidth;
         info.height = view.recommendedImageRectHeight;
@@ -255,17 +282,14 @@ void XrApp::State::create_swapchains() {
         info.arraySize = 1;
         info.mipCount = 1;
         Swapchain& swapchain = swapchains.emplace_back();
-        check(xrCreateSwapchain(session, &info, &swapchain.handle), "xrCreateSwapchain");
         swapchain.images.extent = {info.width, info.height};
         swapchain.images.format = format;
-
-        std::uint32_t image_count = 0;
-        check(xrEnumerateSwapchainImages(swapchain.handle, 0, &image_count, nullptr), "xrEnumerateSwapchainImages");
-        std::vector<XrSwapchainImageVulkan2KHR> images(image_count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
-        check(xrEnumerateSwapchainImages(swapchain.handle, image_count, &image_count,
-                                         reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
-              "xrEnumerateSwapchainImages");
-        for (const auto& image : images) { swapchain.images.images.push_back(image.image); }
+        swapchain.images.images =
+            create_swapchain(info, format, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT, swapchain.handle);
+        if (depth_enabled) {
+            swapchain.images.depth_images =
+                create_swapchain(info, VK_FORMAT_D32_SFLOAT, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, swapchain.depth);
+        }
     }
 }
 
@@ -423,15 +447,22 @@ static EyeView eye_view_of(const XrView& view) {
     return eye;
 }
 
-void XrApp::State::draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views) {
+std::uint32_t XrApp::State::acquire(XrSwapchain swapchain) const {
+    std::uint32_t image = 0;
+    check(xrAcquireSwapchainImage(swapchain, nullptr, &image), "xrAcquireSwapchainImage");
+    XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO};
+    wait.timeout = XR_INFINITE_DURATION;
+    check(xrWaitSwapchainImage(swapchain, &wait), "xrWaitSwapchainImage");
+    return image;
+}
+
+void XrApp::State::draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views,
+                              std::vector<XrCompositionLayerDepthInfoKHR>& depths) {
+    depths.resize(swapchains.size());  // the layer's views point to them
     for (std::uint32_t eye = 0; eye < swapchains.size(); ++eye) {
         const Swapchain& swapchain = swapchains[eye];
-        std::uint32_t image = 0;
-        check(xrAcquireSwapchainImage(swapchain.handle, nullptr, &image), "xrAcquireSwapchainImage");
-        XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO};
-        wait.timeout = XR_INFINITE_DURATION;
-        check(xrWaitSwapchainImage(swapchain.handle, &wait), "xrWaitSwapchainImage");
-        scene.draw(eye, image, eye_view_of(views[eye]));
+        const std::uint32_t image = acquire(swapchain.handle), depth = depth_enabled ? acquire(swapchain.depth) : 0;
+        scene.draw(eye, image, depth, eye_view_of(views[eye]));
         check(xrReleaseSwapchainImage(swapchain.handle, nullptr), "xrReleaseSwapchainImage");
 
         XrCompositionLayerProjectionView& layer_view = layer_views.emplace_back();
@@ -441,6 +472,16 @@ void XrApp::State::draw_views(Scene& scene, const std::vector<XrView>& views, st
         layer_view.subImage.swapchain = swapchain.handle;
         layer_view.subImage.imageRect.extent = {static_cast<std::int32_t>(swapchain.images.extent.width),
                                                 static_cast<std::int32_t>(swapchain.images.extent.height)};
+        if (!depth_enabled) { continue; }
+        check(xrReleaseSwapchainImage(swapchain.depth, nullptr), "xrReleaseSwapchainImage");
+        depths[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR};
+        depths[eye].subImage = layer_view.subImage;
+        depths[eye].subImage.swapchain = swapchain.depth;
+        depths[eye].minDepth = 0;
+        depths[eye].maxDepth = 1;
+        depths[eye].nearZ = options.near_m;
+        depths[eye].farZ = options.far_m;
+        layer_view.next = &depths[eye];
     }
 }
 
@@ -455,8 +496,9 @@ void XrApp::State::run_frame(Scene& scene) {
 
     std::vector<XrView> views;
     std::vector<XrCompositionLayerProjectionView> layer_views;
+    std::vector<XrCompositionLayerDepthInfoKHR> depths;
     if (frame.shouldRender && locate_views(frame.predictedDisplayTime, views)) {
-        draw_views(scene, views, layer_views);
+        draw_views(scene, views, layer_views, depths);
         ++frames_drawn;
     }
     XrCompositionLayerSceneLuminanceENTOPTICX luminance{XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX, nullptr,
@@ -482,7 +524,10 @@ void XrApp::State::run_frame(Scene& scene) {
 
 XrApp::State::~State() {
     if (gpu) { vkDeviceWaitIdle(gpu->device()); }
-    for (const Swapchain& swapchain : swapchains) { xrDestroySwapchain(swapchain.handle); }
+    for (const Swapchain& swapchain : swapchains) {
+        xrDestroySwapchain(swapchain.handle);
+        if (swapchain.depth != XR_NULL_HANDLE) { xrDestroySwapchain(swapchain.depth); }
+    }
     if (local_space != XR_NULL_HANDLE) { xrDestroySpace(local_space); }
     if (session != XR_NULL_HANDLE) { xrDestroySession(session); }
     if (actions.set != XR_NULL_HANDLE) { xrDestroyActionSet(actions.set); }

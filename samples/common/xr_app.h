@@ -27,6 +27,7 @@ struct EyeImages {
     VkExtent2D extent{};
     VkFormat format = VK_FORMAT_UNDEFINED;
     std::vector<VkImage> images;
+    std::vector<VkImage> depth_images;  // D32_SFLOAT; empty: the runtime does not ask how far away things are
 };
 
 // What the user did with the controllers since the last frame.
@@ -50,8 +51,9 @@ public:
     virtual bool update(const FrameTime& time, const ControllerInput& input) = 0;
     // Luminance in cd/m² of a pixel of linear RGB (1, 1, 1) in the frame begun by update().
     virtual float luminance_per_unit() const = 0;
-    // Records and submits the picture of one eye into its image, which is and stays in COLOR_ATTACHMENT_OPTIMAL.
-    virtual void draw(std::uint32_t eye, std::uint32_t image, const EyeView& view) = 0;
+    // Records and submits the picture of one eye into its image, which is and stays in COLOR_ATTACHMENT_OPTIMAL, and into depth image number
+    // `depth` if there are any: they are and stay in DEPTH_STENCIL_ATTACHMENT_OPTIMAL.
+    virtual void draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view) = 0;
 };
 
 struct XrAppOptions {
@@ -59,6 +61,8 @@ struct XrAppOptions {
     std::vector<VkFormat> formats;  // linear float swapchain formats that will do, the best first
     bool scene_luminance = true;    // use XR_ENTOPTICX_scene_luminance where the runtime has it
     bool controllers = false;       // make an action set for ControllerInput
+    // Planes of the depth buffer, m (0 near, 1 far): submit it with XR_KHR_composition_layer_depth where the runtime has that. 0: no depth.
+    float near_m = 0, far_m = 0;
     std::uint64_t frames = 0;       // ask for the end after so many frames drawn; 0: no limit
     double seconds = 0;             // ask for the end at this predicted display time since the first frame; 0: no limit
 };

@@ -102,7 +102,7 @@ public:
     Demo(const Options& options, LightControl control) : options_(options), control_(std::move(control)), office_(build_office()) {}
 
     // Bakes the light and uploads the office.
-    void load(const Gpu& gpu) {
+    void load(const Gpu& gpu, bool keep_depth) {
         using clock = std::chrono::steady_clock;
         const auto seconds = [](clock::duration d) { return std::chrono::duration<double>(d).count(); };
         const auto start = clock::now();
@@ -110,7 +110,7 @@ public:
         const auto painted = clock::now();
         const Lightmap lightmap = bake(office_, materials);
         const auto baked = clock::now();
-        renderer_ = std::make_unique<OfficeRenderer>(gpu, office_, materials, lightmap, sample_count(gpu), options_.lamp_cd_m2);
+        renderer_ = std::make_unique<OfficeRenderer>(gpu, office_, materials, lightmap, sample_count(gpu), options_.lamp_cd_m2, keep_depth);
         fmt::print(stderr, "office ready: textures {:.2f} s, light {:.2f} s ({} x {} texels), upload {:.2f} s, on {}\n",
                    seconds(painted - start), seconds(baked - painted), lightmap.width, lightmap.height, seconds(clock::now() - baked),
                    gpu.properties().deviceName);
@@ -120,8 +120,8 @@ public:
     LightControl& control() { return control_; }
 
     void prepare(const Gpu& gpu, const std::vector<EyeImages>& eyes) override {
-        load(gpu);
-        for (const EyeImages& eye : eyes) { renderer_->add_eye(eye.extent, eye.images); }
+        load(gpu, !eyes.front().depth_images.empty());
+        for (const EyeImages& eye : eyes) { renderer_->add_eye(eye.extent, eye.images, eye.depth_images); }
         if (options_.no_extension) {
             fmt::print(stderr,
                        "entoptic-demo: XR_ENTOPTICX_scene_luminance is not in use; tell the runtime the scale another way, for "
@@ -143,7 +143,9 @@ public:
 
     float luminance_per_unit() const override { return unit_; }
 
-    void draw(std::uint32_t eye, std::uint32_t image, const EyeView& view) override { renderer_->draw(eye, image, view); }
+    void draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view) override {
+        renderer_->draw(eye, image, depth, view);
+    }
 
     // For runtimes that take no XR_ENTOPTICX_scene_luminance: one unit for any light, which they can be told by other means.
     void fix_unit() { options_.no_extension = true; }
@@ -171,7 +173,7 @@ int run_offscreen(const Options& options) {
     const auto gpu = Gpu::standalone("Entoptic demo");
     Demo demo(options, make_control(options));
     if (options.light == "cycle" || !options.script.empty()) { demo.control().update({options.at_seconds, 0}, {}); }
-    demo.load(*gpu);
+    demo.load(*gpu, true);
     render_offscreen(*gpu, demo.renderer(), demo.control().light(), options.offscreen);
     return static_cast<int>(ExitCode::done);
 }
@@ -183,6 +185,8 @@ int run_openxr(const Options& options) {
     app_options.formats = {OfficeRenderer::format};
     app_options.scene_luminance = !options.no_extension;
     app_options.controllers = true;
+    app_options.near_m = OfficeRenderer::near_plane;
+    app_options.far_m = OfficeRenderer::far_plane;
     app_options.frames = options.frames;
     app_options.seconds = options.seconds;
     XrApp app(app_options);

@@ -28,9 +28,21 @@ static EyeView eye_view(const OffscreenOptions& options, int eye) {
     return view;
 }
 
+// Distance from the eye of every pixel. 1 over the distance along the view's axis is linear in the depth buffer.
+static std::vector<float> distances(const Gpu& gpu, const Image& depth, const EyeView& view) {
+    std::vector<float> values = read_back_depth(gpu, depth.image.get(), depth.extent);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float u = (static_cast<float>(i % depth.extent.width) + 0.5F) / static_cast<float>(depth.extent.width);
+        const float v = (static_cast<float>(i / depth.extent.width) + 0.5F) / static_cast<float>(depth.extent.height);
+        const float axis = 1 / std::lerp(1 / OfficeRenderer::near_plane, 1 / OfficeRenderer::far_plane, values[i]);
+        values[i] = axis * glm::length(glm::vec3(std::lerp(view.tan_left, view.tan_right, u), std::lerp(view.tan_up, view.tan_down, v), 1));
+    }
+    return values;
+}
+
 static Picture picture_of(const Gpu& gpu, const Image& image, float unit) {
     const std::vector<std::byte> bytes = read_back(gpu, image.image.get(), image.extent, 8);
-    Picture picture{image.extent.width, image.extent.height, {}};
+    Picture picture{image.extent.width, image.extent.height, {}, {}};
     picture.pixels.reserve(bytes.size() / 8);
     for (std::size_t i = 0; i < bytes.size(); i += 8) {
         std::uint64_t halves = 0;
@@ -59,19 +71,22 @@ void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& lig
     std::error_code error;
     std::filesystem::create_directories(options.folder, error);
     if (error) { throw Failure(ExitCode::failed, fmt::format("cannot make the folder {}: {}", options.folder, error.message())); }
-    std::vector<Image> images;
+    std::vector<Image> images, depths;
     for (int eye = 0; eye < 2; ++eye) {
         images.push_back(create_image(gpu, {.format = OfficeRenderer::format,
                                             .extent = options.size,
                                             .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-        renderer.add_eye(options.size, {images.back().image.get()});
+        depths.push_back(create_image(gpu, {.format = VK_FORMAT_D32_SFLOAT,
+                                            .extent = options.size,
+                                            .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+        renderer.add_eye(options.size, {images.back().image.get()}, {depths.back().image.get()});
     }
     const float unit = pre_exposure(renderer.brightest(light));
     renderer.set_light(light, unit);
     std::vector<double> times_ms;
     for (std::uint64_t frame = 0; frame < std::max<std::uint64_t>(options.frames, 1); ++frame) {
         const auto start = std::chrono::steady_clock::now();
-        for (int eye = 0; eye < 2; ++eye) { renderer.draw(static_cast<std::uint32_t>(eye), 0, eye_view(options, eye)); }
+        for (int eye = 0; eye < 2; ++eye) { renderer.draw(static_cast<std::uint32_t>(eye), 0, 0, eye_view(options, eye)); }
         renderer.wait();
         times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
@@ -80,7 +95,8 @@ void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& lig
                times_ms.size(), times_ms.front(), unit);
     for (int eye = 0; eye < 2; ++eye) {
         const char* name = eye == 0 ? "left" : "right";
-        const Picture picture = picture_of(gpu, images[static_cast<std::size_t>(eye)], unit);
+        Picture picture = picture_of(gpu, images[static_cast<std::size_t>(eye)], unit);
+        picture.distances = distances(gpu, depths[static_cast<std::size_t>(eye)], eye_view(options, eye));
         print_statistics(name, picture);
         const std::string base = options.folder + "/" + name;
         write_radiance_map(base + ".exr", picture, 1.0F);

@@ -17,7 +17,7 @@ namespace samples {
 
 namespace {
 
-constexpr float near_plane = 0.05F, far_plane = 200.0F;  // m
+constexpr float near_plane = OfficeRenderer::near_plane, far_plane = OfficeRenderer::far_plane;
 constexpr std::uint32_t most_eyes = 4;
 
 struct Vertex {
@@ -107,8 +107,8 @@ glm::mat4 clip_from_world(const EyeView& view) {
 }
 
 OfficeRenderer::OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
-                               VkSampleCountFlagBits samples, double lamp_peak_cd_m2)
-    : gpu_(gpu), pass_format_{format, samples, true}, lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
+                               VkSampleCountFlagBits samples, double lamp_peak_cd_m2, bool keep_depth)
+    : gpu_(gpu), pass_format_{format, samples, true, keep_depth}, lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
     for (const glm::vec4& lux : lightmap.texels) { largest_illuminance_ = glm::max(largest_illuminance_, lux); }
     for (const Patch& patch : office.patches) {
         brightest_star_ = patch.emitter == Emitter::stars ? std::max(brightest_star_, patch.emission) : brightest_star_;
@@ -199,12 +199,12 @@ void OfficeRenderer::create_pipelines() {
     added_emitter_ = create_pipeline(gpu_, description);
 }
 
-void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& images) {
+void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& images, const std::vector<VkImage>& depth_images) {
     Buffer uniforms = create_buffer(gpu_, sizeof(ViewUniforms), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     const VkDescriptorSet set = allocate_set(gpu_, pool_.get(), view_layout_.get());
     write_uniform_buffer(gpu_, set, 0, uniforms.buffer.get(), 0, sizeof(ViewUniforms));
     write_image(gpu_, set, 1, lightmap_.view.get(), clamp_.get());
-    eyes_.push_back({EyePass(gpu_, pass_format_, render_pass_.get(), extent, images), std::move(uniforms), set});
+    eyes_.push_back({EyePass(gpu_, pass_format_, render_pass_.get(), extent, images, depth_images), std::move(uniforms), set});
 }
 
 void OfficeRenderer::set_light(const Light& light, float unit_cd_m2) {
@@ -249,7 +249,7 @@ double OfficeRenderer::brightest(const Light& light) const {
     return std::max(bound, reflected);
 }
 
-void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, const EyeView& view) {
+void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
     const Eye& eye = eyes_.at(index);
     eye.pass.wait();  // before its uniforms change
     ViewUniforms uniforms{};
@@ -260,7 +260,7 @@ void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, const EyeVie
     }
     uniforms.eye = glm::vec4(view.position, 1);
     std::memcpy(eye.uniforms.mapped, &uniforms, sizeof(uniforms));
-    eye.pass.draw(image, [&](VkCommandBuffer commands) { record(commands, eye); });
+    eye.pass.draw(image, depth, [&](VkCommandBuffer commands) { record(commands, eye); });
 }
 
 void OfficeRenderer::record(VkCommandBuffer commands, const Eye& eye) const {

@@ -15,14 +15,17 @@ class OfficeRenderer {
 public:
     static constexpr VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-    // `samples`: 1 or 4 a pixel. `lamp_peak_cd_m2`: the bulb's luminance when it is fully on.
+    // Planes of the depth buffer, m.
+    static constexpr float near_plane = 0.05F, far_plane = 200.0F;
+
+    // `samples`: 1 or 4 a pixel. `keep_depth`: into the depth images given to add_eye(). `lamp_peak_cd_m2`: the bulb's luminance when it is fully on.
     OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
-                   VkSampleCountFlagBits samples, double lamp_peak_cd_m2);
+                   VkSampleCountFlagBits samples, double lamp_peak_cd_m2, bool keep_depth);
     OfficeRenderer(const OfficeRenderer&) = delete;
     OfficeRenderer& operator=(const OfficeRenderer&) = delete;
 
     // The images of one more eye; eyes are numbered in the order of the calls.
-    void add_eye(VkExtent2D extent, const std::vector<VkImage>& images);
+    void add_eye(VkExtent2D extent, const std::vector<VkImage>& images, const std::vector<VkImage>& depth_images);
 
     // Sets the light of the next pictures. `unit_cd_m2` is the luminance of a pixel of value 1.
     void set_light(const Light& light, float unit_cd_m2);
@@ -30,7 +33,7 @@ public:
     double brightest(const Light& light) const;
 
     // Submits the picture of an eye; returns before it is done.
-    void draw(std::uint32_t eye, std::uint32_t image, const EyeView& view);
+    void draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view);
     void wait() const;
 
 private:

@@ -95,14 +95,14 @@ void Viewer::prepare(const Gpu& gpu, const std::vector<EyeImages>& eyes) {
     for (const EyeImages& eye : eyes) { eyes_.emplace_back(gpu, PassFormat{.colour = format}, render_pass_.get(), eye.extent, eye.images); }
 }
 
-void Viewer::draw(std::uint32_t eye, std::uint32_t image, const EyeView& view) {
+void Viewer::draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
     const float half_width = std::tan(glm::radians(0.5F * options_.fov_degrees));
     const glm::quat& q = view.orientation;
     const ViewConstants constants{{view.tan_left, view.tan_right, view.tan_up, view.tan_down},
                                   {q.x, q.y, q.z, q.w},
                                   {half_width, half_width * aspect_},
                                   options_.projection == Projection::flat ? 1U : 0U};
-    eyes_.at(eye).draw(image, [&](VkCommandBuffer commands) {
+    eyes_.at(eye).draw(image, depth, [&](VkCommandBuffer commands) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
         vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(constants), &constants);

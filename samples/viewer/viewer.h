@@ -37,7 +37,7 @@ public:
     void prepare(const Gpu& gpu, const std::vector<EyeImages>& eyes) override;
     bool update(const FrameTime&, const ControllerInput&) override { return true; }
     float luminance_per_unit() const override { return exposure_.unit_cd_m2; }
-    void draw(std::uint32_t eye, std::uint32_t image, const EyeView& view) override;
+    void draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view) override;
 
 private:
     void upload_map(const Gpu& gpu, bool half_target);

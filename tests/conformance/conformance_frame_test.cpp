@@ -171,6 +171,61 @@ TEST_F(Frames, Projection) {
     EXPECT_EQ(xr.host->service.last_submission().layers.at(0).views[0].image.width, 0) << "a view without extent shows nothing";
 }
 
+TEST_F(Frames, DepthOfAProjection) {
+    XrSwapchainCreateInfo info = swapchain_info(2);
+    info.format = VK_FORMAT_D32_SFLOAT;
+    info.usageFlags = XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const XrSwapchain depth_swapchain = make_swapchain(info), unused_depth = make_swapchain(info);
+    const std::uint32_t depth_image = cycle(depth_swapchain);
+    constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    std::array<XrCompositionLayerDepthInfoKHR, 2> depths;
+    std::array<XrCompositionLayerProjectionView, 2> views;
+    for (std::uint32_t eye = 0; eye < 2; ++eye) {
+        depths[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, {depth_swapchain, {{4, 2}, {32, 16}}, eye}, 0.25f, 1, infinity, 0.1f};
+        views[eye] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, &depths[eye], identity, {-0.5f, 0.6f, 0.7f, -0.8f}, sub_image(eye)};
+    }
+    const XrCompositionLayerProjection layer{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, local, 2, views.data()};
+    ASSERT_EQ(frame({header(&layer)}), XR_SUCCESS);
+    const LayerDepth found = xr.host->service.last_submission().layers.at(0).views[1].depth;
+    EXPECT_EQ(found.image.image_index, depth_image);
+    EXPECT_EQ(found.image.array_layer, 1u);
+    EXPECT_EQ(found.image.x, 4);
+    EXPECT_EQ(found.image.width, 32);
+    EXPECT_EQ(found.min_depth, 0.25f);
+    EXPECT_EQ(found.max_depth, 1);
+    EXPECT_EQ(found.near_z_m, infinity);
+    EXPECT_EQ(found.far_z_m, 0.1f);
+
+    const auto with = [&](auto edit) {
+        const auto good = depths[1];
+        edit(depths[1]);
+        const XrResult result = frame({header(&layer)});
+        depths[1] = good;
+        return result;
+    };
+    using Depth = XrCompositionLayerDepthInfoKHR;
+    EXPECT_EQ(with([](Depth& d) { d.minDepth = -0.1f; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.maxDepth = 1.1f; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.minDepth = d.maxDepth; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.maxDepth = nan; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.nearZ = 0; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.farZ = -1; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.farZ = d.nearZ; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.nearZ = nan; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.nearZ = 0.1f, d.farZ = infinity; }), XR_SUCCESS);
+    EXPECT_EQ(with([](Depth& d) { d.subImage.imageRect.extent.width = 100; }), XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    EXPECT_EQ(with([](Depth& d) { d.subImage.imageArrayIndex = 2; }), XR_ERROR_VALIDATION_FAILURE);
+    EXPECT_EQ(with([](Depth& d) { d.subImage.swapchain = XR_NULL_HANDLE; }), XR_ERROR_HANDLE_INVALID);
+    EXPECT_EQ(with([&](Depth& d) { d.subImage.swapchain = swapchain; }), XR_ERROR_LAYER_INVALID) << "colour is no depth";
+    EXPECT_EQ(with([&](Depth& d) { d.subImage.swapchain = unused_depth; }), XR_ERROR_LAYER_INVALID) << "nothing was released";
+    views[0].subImage.swapchain = depth_swapchain;
+    EXPECT_EQ(frame({header(&layer)}), XR_ERROR_LAYER_INVALID) << "depth is no colour";
+    views[0].subImage.swapchain = swapchain;
+    views[0].next = nullptr;
+    ASSERT_EQ(frame({header(&layer)}), XR_SUCCESS) << "one view may go without";
+    EXPECT_EQ(xr.host->service.last_submission().layers.at(0).views[0].depth.image.width, 0);
+}
+
 TEST_F(Frames, BadLayers) {
     EXPECT_EQ(frame({nullptr}), XR_ERROR_LAYER_INVALID);
     XrCompositionLayerQuad layer = quad();

@@ -1,0 +1,16 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+#include "perception/curves/glare_psf.glsl"
+#include "perception/glare/luidolt_spectral_params.h"
+#define CurveSettings GlarePsf
+#define CurveParams LuidoltSpectralParams
+#include "perception/curves/curve_pass.glsl"
+#include "perception/curves/glare_psf_waves.glsl"
+
+float covered_share() { return 1.0 - exp(-params.particles_per_mm2 * 0.7853981633974483e-6 * params.particle_diameter_um * params.particle_diameter_um); }
+
+float curve_value(float x) {
+    return sum_of_waves(WaveOptics(own.pupil_mm, params.particle_diameter_um, covered_share(), params.diffraction, 0.0, 0.0), x, 0.0);
+}

@@ -1,0 +1,60 @@
+// mes2 in double from CIE 191, with none of the shader's code: the adaptation coefficient by a search for the change of sign on a fine
+// scale and regula falsi inside it, local means by their definition.
+#include "perception/mesopic/rod_vision.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace entoptic::perception {
+namespace {
+
+constexpr double v_prime_555 = 683.0 / 1700;
+
+// By how much m is above the coefficient of its own mesopic luminance.
+double excess(double m, double photopic, double scotopic) {
+    const double mesopic = (m * photopic + (1 - m) * scotopic * v_prime_555) / (m + (1 - m) * v_prime_555);
+    return m - std::clamp(1 + std::log10(mesopic / 5) / 3, 0.0, 1.0);
+}
+
+double adaptation_coefficient(double photopic, double scotopic) {
+    if (photopic >= 5) return 1;
+    double low = 0, at_low = excess(0, photopic, scotopic);
+    if (at_low >= 0) return 0;
+    for (int i = 1; i <= 64; ++i) {
+        double high = i / 64.0, at_high = excess(high, photopic, scotopic);
+        if (at_high < 0) {
+            low = high, at_low = at_high;
+            continue;
+        }
+        for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
+            const double m = std::clamp((low * at_high - high * at_low) / (at_high - at_low), low, high), at = excess(m, photopic, scotopic);
+            if (at < 0) low = m, at_low = at, at_high *= 0.5;   // the Illinois rule
+            else high = m, at_high = at, at_low *= 0.5;
+        }
+        return high;
+    }
+    return 1;
+}
+
+class Mes2Reference final : public ReferenceModel {
+public:
+    void apply(ReferenceFrame& frame, std::span<const float> values) override {
+        const auto value = [&](std::size_t i) { return static_cast<double>(values[i]); };
+        RodVisionLaw law;
+        law.scotopic = {0.0153, 0.5951, 0.3896};
+        law.gain = 2.4645 * v_prime_555;
+        law.rod_lumen = v_prime_555;
+        law.tint = {value(4), value(5), value(6)};
+        law.strength = value(0);
+        law.photographic = value(1) > 0.5;
+        law.local_mean_deg = value(3);
+        law.cone_share = [sp = value(2)](double y) { return adaptation_coefficient(y, sp * y); };
+        apply_rod_vision(frame, law);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<ReferenceModel> make_mes2_reference() { return std::make_unique<Mes2Reference>(); }
+
+}  // namespace entoptic::perception

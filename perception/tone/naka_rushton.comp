@@ -1,0 +1,27 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+#include "perception/observer_state.h"
+#include "perception/tone/naka_rushton_math.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
+layout(scalar, binding = 1) readonly buffer State { ObserverState state[]; };
+
+layout(scalar, push_constant) uniform Push {
+    NakaRushtonParams params;
+    uint pixels;            // of one view
+    float white_cd_m2;
+} push;
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x, view = gl_GlobalInvocationID.z;
+    if (i >= push.pixels) return;
+    const uint at = view * push.pixels + i;
+    const vec4 pixel = scene[at];
+    const float y = luminance(pixel.rgb);
+    const float r = response(push.params, y, log2_half_saturation(push.params, state[view].adaptation_cd_m2));
+    scene[at] = vec4(displayed_colour(pixel.rgb, y, displayed(push.params, r, push.white_cd_m2), push.white_cd_m2), pixel.w);
+}
