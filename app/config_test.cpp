@@ -49,7 +49,7 @@ protected:
 TEST_F(Configuration, WithoutFilesAllIsDefault) {
     const Config config = loaded();
     EXPECT_EQ(config.panel.value, std::pair(1440, 1600));
-    EXPECT_EQ(config.preset.value, "luidolt2020");
+    EXPECT_EQ(config.preset.value, "combined");
     for (const ConfigLine& line : describe(config)) EXPECT_EQ(line.origin, "default") << line.key;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <toml++/toml.h>
 
@@ -44,16 +45,33 @@ Result<std::vector<PersonSetting>> settings_of(const std::string& path, const to
     return out;
 }
 
+Result<std::vector<PersonSetting>> parse_observer(const std::string& text, const std::string& path) {
+    try {
+        return settings_of(path, toml::parse(text, path));
+    } catch (const toml::parse_error& e) {
+        return usage_error(fmt::format("{}:{}: {}.", path, e.source().begin.line, e.description()));
+    }
+}
+
 Result<std::vector<PersonSetting>> read_observer(const std::string& name) {
     const fs::path path = fs::path(config_folder()) / "observers" / (name + ".toml");
-    std::ifstream in(path);
-    if (!in || name.find('/') != std::string::npos)
-        return usage_error(fmt::format("There is no observer '{}': '{}' cannot be read.", name, path.string()));
-    try {
-        return settings_of(path, toml::parse(in, path.string()));
-    } catch (const toml::parse_error& e) {
-        return usage_error(fmt::format("{}:{}: {}.", path.string(), e.source().begin.line, e.description()));
+    if (std::ifstream in(path); in && name.find('/') == std::string::npos)
+        return parse_observer({std::istreambuf_iterator<char>(in), {}}, path.string());
+    std::vector<std::string_view> known;
+    for (const BuiltInObserver& built_in : built_in_observers()) {
+        if (name == built_in.name) return parse_observer(built_in.toml, fmt::format("observer {}", name));
+        known.emplace_back(built_in.name);
     }
+    return usage_error(fmt::format("There is no observer '{}': '{}' cannot be read. Observers that come with the program: {}.", name, path.string(), fmt::join(known, ", ")));
+}
+
+// A person's number that the chosen model takes in another range says which file and key asked for it.
+Result<void> check_range(const perception::Selection& selection, const PersonSetting& wanted, const std::string& observer) {
+    for (const perception::ParameterInfo& p : selection.find(wanted.slot)->entry->parameters)
+        if (wanted.parameter == p.name && !(wanted.value >= static_cast<double>(p.min) && wanted.value <= static_cast<double>(p.max)))
+            return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range: {:g} to {:g} {}.", observer, wanted.slot, wanted.parameter, wanted.value, p.min,
+                                           p.max, p.unit));
+    return {};
 }
 
 bool has_parameter(const perception::Selection& selection, const PersonSetting& wanted) {
@@ -72,7 +90,10 @@ Result<perception::Selection> select_effects(const std::string& preset, const st
     ENTOPTIC_TRY(chosen, perception::select(preset, models, {}));
     std::vector<std::string> all;
     for (const PersonSetting& s : person)
-        if (has_parameter(chosen, s)) all.push_back(fmt::format("{}.{}={}", s.slot, s.parameter, s.value));
+        if (has_parameter(chosen, s)) {
+            ENTOPTIC_CHECK(check_range(chosen, s, observer));
+            all.push_back(fmt::format("{}.{}={}", s.slot, s.parameter, s.value));
+        }
     all.insert(all.end(), settings.begin(), settings.end());
     return perception::select(preset, models, all);
 }

@@ -3,15 +3,24 @@
 //   description = "my grandfather"
 //   [settings]
 //   glare.age = 74
+//
+// Some come with the program (built_in_observers()); a file of the same name takes their place.
 #pragma once
 
 #include "base/result.h"
 #include "perception/preset.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
 namespace entoptic::app {
+
+struct BuiltInObserver {
+    const char* name;
+    const char* toml;     // as a file would hold it, with its sources
+};
+std::span<const BuiltInObserver> built_in_observers();
 
 // The effects that a preset, its overrides and a person's file choose together. What the person's file says of models that are not chosen is
 // left out; --set wins over the file. `observer` empty: the default eye.

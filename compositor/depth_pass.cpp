@@ -19,12 +19,14 @@ Result<DepthPass> DepthPass::create(gpu::Device& device, const std::array<EyeGeo
     DepthPass pass;
     pass.device_ = &device;
     ENTOPTIC_TRY(grids, EyeGrids::create(device, geometry, tile_width, tile_height, "depth"));
-    ENTOPTIC_TRY(kernel, gpu::Kernel::create(device, {"depth of a layer",
-                                                      depth_comp_spv,
-                                                      {uniform_buffer, uniform_buffer, storage_buffer, storage_buffer, sampled_image, sampled_image},
-                                                      sizeof(DepthPush),
-                                                      {}}));
-    ENTOPTIC_TRY(buffer, gpu::Buffer::create(device, eye_count * layer_slots * sizeof(DepthLayer), gpu::BufferKind::upload, "depth layers"));
+    ENTOPTIC_TRY(
+        kernel, gpu::Kernel::create(device, {"depth of a layer",
+                                             depth_comp_spv,
+                                             {uniform_buffer, uniform_buffer, storage_buffer, storage_buffer, sampled_image, sampled_image},
+                                             sizeof(DepthPush),
+                                             {}}));
+    ENTOPTIC_TRY(buffer,
+                 gpu::Buffer::create(device, eye_count * layer_slots * sizeof(DepthLayer), gpu::BufferKind::upload, "depth layers"));
     pass.grids_ = std::move(grids);
     pass.kernel_ = std::move(kernel);
     pass.buffer_ = std::move(buffer);
@@ -80,7 +82,11 @@ void DepthPass::record(gpu::Commands& commands, perception::Stage& stage) {
             const auto& shown = grids_.shown(eye);
             const Views& views = views_[std::size_t(eye)][slot];
             commands.dispatch(kernel_,
-                              {grids_.geometry(), buffer_, shown.list, stage.depth(), {views.colour, sampler_, VK_IMAGE_LAYOUT_GENERAL},
+                              {grids_.geometry(),
+                               buffer_,
+                               shown.list,
+                               stage.depth(),
+                               {views.colour, sampler_, VK_IMAGE_LAYOUT_GENERAL},
                                {views.depth, sampler_, VK_IMAGE_LAYOUT_GENERAL}},
                               DepthPush{std::uint32_t(eye), shown.count, std::uint32_t(slot)}, shown.groups());
         }
@@ -88,7 +94,8 @@ void DepthPass::record(gpu::Commands& commands, perception::Stage& stage) {
     // An eye that sees no layer at all sees nothing known.
     for (int eye = 0; eye < eye_count; ++eye)
         if (layers_[std::size_t(eye)].empty())
-            commands.fill(stage.depth(), std::bit_cast<std::uint32_t>(unknown_dioptre), std::size_t(eye) * stage.view_bytes() / 4, stage.view_bytes() / 4);
+            commands.fill(stage.depth(), std::bit_cast<std::uint32_t>(unknown_dioptre), std::size_t(eye) * stage.view_bytes() / 4,
+                          stage.view_bytes() / 4);
     stage.depth_written();
 }
 

@@ -48,7 +48,8 @@ struct Screen {
     }
     Layer grey_layer() const { return projection_layer(grey, options.eyes); }
     // Depth for both eyes; `value(x, y)` is what the application's depth buffer holds.
-    template <class Value> Layer deep_layer(int width, int height, VkFormat format, LayerDepth range, const std::function<Value(int, int)>& value) {
+    template <class Value>
+    Layer deep_layer(int width, int height, VkFormat format, LayerDepth range, const std::function<Value(int, int)>& value) {
         std::vector<Value> texels;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) texels.push_back(value(x, y));
@@ -106,7 +107,8 @@ template <class Expected> void expect_dioptres(const std::vector<float>& found, 
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             const double at = static_cast<double>(found[std::size_t(y * size + x)]), wanted = expected(x, y);
-            if (std::abs(at - wanted) > tolerance * std::max(1.0, wanted) && ++wrong <= 3) ADD_FAILURE() << x << ", " << y << ": " << at << ", not " << wanted;
+            if (std::abs(at - wanted) > tolerance * std::max(1.0, wanted) && ++wrong <= 3)
+                ADD_FAILURE() << x << ", " << y << ": " << at << ", not " << wanted;
         }
     EXPECT_EQ(wrong, 0);
 }
@@ -119,8 +121,9 @@ TEST(Depth, IsThatOfTheDepthBufferInEveryConvention) {
         const char* name;
         float min_depth, max_depth, near_z, far_z;
     };
-    for (const Convention& c : {Convention{"near to far", 0, 1, 0.1f, 100}, Convention{"reversed", 0, 1, 100, 0.1f}, Convention{"infinite", 0, 1, 0.1f, infinity},
-                                Convention{"reversed, infinite", 0, 1, infinity, 0.1f}, Convention{"part of the range", 0.2f, 0.7f, 0.1f, 100}}) {
+    for (const Convention& c :
+         {Convention{"near to far", 0, 1, 0.1f, 100}, Convention{"reversed", 0, 1, 100, 0.1f}, Convention{"infinite", 0, 1, 0.1f, infinity},
+          Convention{"reversed, infinite", 0, 1, infinity, 0.1f}, Convention{"part of the range", 0.2f, 0.7f, 0.1f, 100}}) {
         SCOPED_TRACE(c.name);
         // The projection's own depth, z' = A + B/z with near at min_depth and far at max_depth.
         const auto value = [&](int x, int y) {
@@ -129,7 +132,8 @@ TEST(Depth, IsThatOfTheDepthBufferInEveryConvention) {
         };
         const LayerDepth range{{}, c.min_depth, c.max_depth, c.near_z, c.far_z};
         for (int eye : {0, 1})
-            expect_dioptres(screen.dioptres({screen.deep_layer<float>(size, size, VK_FORMAT_D32_SFLOAT, range, value)}, eye), expected, 3e-5);
+            expect_dioptres(screen.dioptres({screen.deep_layer<float>(size, size, VK_FORMAT_D32_SFLOAT, range, value)}, eye), expected,
+                            3e-5);
         const auto whole = [&](int x, int y) { return static_cast<std::uint16_t>(std::lround(65535 * double(value(x, y)))); };
         expect_dioptres(screen.dioptres({screen.deep_layer<std::uint16_t>(size, size, VK_FORMAT_D16_UNORM, range, whole)}), expected, 6e-4);
     }
@@ -137,8 +141,9 @@ TEST(Depth, IsThatOfTheDepthBufferInEveryConvention) {
 
 TEST(Depth, UnusableValuesAreUnknown) {
     Screen& screen = shared_screen();
-    const float values[] = {std::numeric_limits<float>::quiet_NaN(), 0.1f, 0.95f, 0.5f};   // the range is 0.2 to 0.9
-    const Layer layer = screen.deep_layer<float>(4, 1, VK_FORMAT_D32_SFLOAT, {{}, 0.2f, 0.9f, 0.1f, infinity}, [&](int x, int) { return values[x]; });
+    const float values[] = {std::numeric_limits<float>::quiet_NaN(), 0.1f, 0.95f, 0.5f};  // the range is 0.2 to 0.9
+    const Layer layer =
+        screen.deep_layer<float>(4, 1, VK_FORMAT_D32_SFLOAT, {{}, 0.2f, 0.9f, 0.1f, infinity}, [&](int x, int) { return values[x]; });
     const auto found = screen.dioptres({layer});
     for (int column = 0; column < 3; ++column) EXPECT_EQ(found[std::size_t(20 * size + column * 16 + 8)], -1) << column;
     EXPECT_GT(found[20 * size + 56], 0);
@@ -153,13 +158,16 @@ TEST(Depth, UnusableValuesAreUnknown) {
         expect_dioptres(screen.dioptres({screen.plane(2), broken}), [](int, int) { return -1; });
     }
     // Nearer than 5 cm counts as 5 cm.
-    const Layer touching = screen.deep_layer<float>(1, 1, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 0.001f}, [](int, int) { return 1.0f; });
+    const Layer touching =
+        screen.deep_layer<float>(1, 1, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 0.001f}, [](int, int) { return 1.0f; });
     expect_dioptres(screen.dioptres({touching}), [](int, int) { return 20; });
 }
 
 TEST(Depth, SubImageAndResolutionAreTheDepthsOwn) {
     Screen& screen = shared_screen();
-    Layer layer = screen.deep_layer<float>(16, 4, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 1}, [](int x, int) { return x < 8 ? 0.9f : x < 12 ? 0.25f : 0.5f; });
+    Layer layer = screen.deep_layer<float>(16, 4, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 1}, [](int x, int) {
+        return x < 8 ? 0.9f : x < 12 ? 0.25f : 0.5f;
+    });
     for (entoptic::LayerView& view : layer.views) view.depth.image.x = 8, view.depth.image.width = 8;
     expect_dioptres(screen.dioptres({layer}), [](int x, int y) { return (x < 32 ? 0.25 : 0.5) * cosine(x, y); });
 }
@@ -183,12 +191,15 @@ TEST(Depth, TurnsWithTheHeadButKeepsItsDistance) {
 
 TEST(Depth, QuadsStandWhereTheyStand) {
     Screen& screen = shared_screen();
-    const Layer quad = quad_layer(screen.grey, {-0.0315f, 0, -2}, 1, 1);   // before the left eye: within a quarter of the tangent
+    const Layer quad = quad_layer(screen.grey, {-0.0315f, 0, -2}, 1, 1);  // before the left eye: within a quarter of the tangent
     const auto inside = [](int x, int y) { return std::abs(2 * (x + 0.5) / size - 1) < 0.25 && std::abs(2 * (y + 0.5) / size - 1) < 0.25; };
-    expect_dioptres(screen.dioptres({screen.plane(5), quad}), [&](int x, int y) { return cosine(x, y) / (inside(x, y) ? 2 : 5); }, 1e-5);
-    expect_dioptres(screen.dioptres({quad}), [&](int x, int y) { return inside(x, y) ? cosine(x, y) / 2 : -1; }, 1e-5);
+    expect_dioptres(
+        screen.dioptres({screen.plane(5), quad}), [&](int x, int y) { return cosine(x, y) / (inside(x, y) ? 2 : 5); }, 1e-5);
+    expect_dioptres(
+        screen.dioptres({quad}), [&](int x, int y) { return inside(x, y) ? cosine(x, y) / 2 : -1; }, 1e-5);
     // Over a picture of unknown depth, and beneath one: painter's order, not distance.
-    expect_dioptres(screen.dioptres({quad, screen.plane(5)}), [&](int x, int y) { return cosine(x, y) / 5; }, 1e-5);
+    expect_dioptres(
+        screen.dioptres({quad, screen.plane(5)}), [&](int x, int y) { return cosine(x, y) / 5; }, 1e-5);
     expect_dioptres(screen.dioptres({quad, screen.grey_layer()}), [](int, int) { return -1; });
 }
 
@@ -202,10 +213,13 @@ TEST(Depth, CoverageDecidesBetweenLayers) {
     };
     for (int alpha : {0, 51, 153, 255}) {
         const double share = alpha / 255.0;
-        expect_dioptres(screen.dioptres({screen.plane(4), veil(std::uint8_t(alpha))}),
-                        [&](int x, int y) { return cosine(x, y) * (share * 2 + (1 - share) * 0.25); }, 1e-5);
+        expect_dioptres(
+            screen.dioptres({screen.plane(4), veil(std::uint8_t(alpha))}),
+            [&](int x, int y) { return cosine(x, y) * (share * 2 + (1 - share) * 0.25); }, 1e-5);
         // Where only one distance is known, what covers more speaks.
-        expect_dioptres(screen.dioptres({screen.grey_layer(), veil(std::uint8_t(alpha))}), [&](int x, int y) { return share > 0.5 ? 2 * cosine(x, y) : -1; }, 1e-5);
+        expect_dioptres(
+            screen.dioptres({screen.grey_layer(), veil(std::uint8_t(alpha))}),
+            [&](int x, int y) { return share > 0.5 ? 2 * cosine(x, y) : -1; }, 1e-5);
     }
 }
 
@@ -224,7 +238,8 @@ TEST(Depth, LinesOfSightMeetWhereTheyMeet) {
     const std::array<Pose, 2> places{eyes[0].head_from_eye, eyes[1].head_from_eye};
     for (const glm::vec3 at : {glm::vec3(0, 0, -1), glm::vec3(0.3f, 0.1f, -0.5f), glm::vec3(-2, 1, -8)}) {
         for (std::size_t eye = 0; eye < 2; ++eye)
-            observer.eyes[eye].gaze_direction = glm::normalize(at - places[eye].position), observer.eyes[eye].gaze_provenance = Provenance::measured;
+            observer.eyes[eye].gaze_direction = glm::normalize(at - places[eye].position),
+            observer.eyes[eye].gaze_provenance = Provenance::measured;
         EXPECT_NEAR(vergence_dioptre(observer, places), -1 / at.z, 1e-4);
     }
     std::swap(observer.eyes[0].gaze_direction, observer.eyes[1].gaze_direction);
@@ -240,11 +255,13 @@ TEST(Depth, BlursWhatTheEyesDoNotLookAt) {
         return Codes{code, code, code, 255};
     });
     // Left half 0.1 m away, right half 10 m; a wide pupil, since 64 pixels for 90 degrees are coarse.
-    Layer layer = screen.deep_layer<float>(2, 1, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 0.1f}, [](int x, int) { return x == 0 ? 1.0f : 0.01f; });
+    Layer layer =
+        screen.deep_layer<float>(2, 1, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 0.1f}, [](int x, int) { return x == 0 ? 1.0f : 0.01f; });
     for (entoptic::LayerView& view : layer.views) view.image = whole(stripes);
     const auto contrast = [&](int from, float gaze_x) {
         FrameDescription frame = description({layer}, screen.options.eyes, 0);
-        for (perception::EyeInput& eye : frame.perception.eyes) eye.gaze_direction = glm::normalize(glm::vec3(gaze_x, 0, -1)), eye.pupil_diameter_mm = 8;
+        for (perception::EyeInput& eye : frame.perception.eyes)
+            eye.gaze_direction = glm::normalize(glm::vec3(gaze_x, 0, -1)), eye.pupil_diameter_mm = 8;
         const ImageUse use = screen.pool.use(frame.layers);
         must(screen.path->compose(frame, use, {false, true, false, false, false}));
         const ImageF picture = screen.path->perceive_picture(0);

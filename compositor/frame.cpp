@@ -117,6 +117,7 @@ Result<void> FramePath::ensure_stages() {
     stage.display = options_.display;
     stage.selection = options_.selection;
     stage.seed = options_.seed;
+    stage.repeatable = options_.repeatable;
     ENTOPTIC_TRY(warp, WarpPass::create(device_, eye_geometry_));
     ENTOPTIC_TRY(glance, GlancePass::create(device_, eye_geometry_));
     ENTOPTIC_TRY(lens, LensPass::create(device_, panel_geometry_, eye_size_, options_.lens_filter));

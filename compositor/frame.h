@@ -53,6 +53,7 @@ struct FramePathOptions {
     bool dither = true;
     bool fuse = true;  // one pass where nothing is simulated; false always takes the long way
     std::uint64_t seed = 1;
+    bool repeatable = true;  // lockstep: see perception::ModelContext
     const Clock* stopwatch = nullptr;  // for CPU times; null leaves them out
 };
 

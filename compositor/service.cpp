@@ -30,6 +30,7 @@ CompositorService::CompositorService(gpu::Device& device, Clock& clock, Headset&
 Result<std::unique_ptr<CompositorService>> CompositorService::create(gpu::Device& device, Clock& clock, Headset& headset,
                                                                      std::unique_ptr<DisplayTarget> target, ServiceOptions options) {
     options.path.eyes = headset.eyes;
+    options.path.repeatable = options.lockstep;
     std::unique_ptr<CompositorService> service(new CompositorService(device, clock, headset, std::move(options)));
     ENTOPTIC_TRY(path, FramePath::create(device, service->options_.path));
     service->path_ = std::move(path);

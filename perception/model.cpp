@@ -23,4 +23,11 @@ std::vector<float> default_parameters(const ModelEntry& entry) {
     return values;
 }
 
+bool names_file(std::string_view slot, std::string_view name) {
+    for (const ModelEntry* entry : models())
+        for (const FileInfo& file : entry->files)
+            if (entry->slot == slot && name == file.name) return true;
+    return false;
+}
+
 }  // namespace entoptic::perception

@@ -9,8 +9,10 @@
 #include "shaders/scene_statistics.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +27,15 @@ struct ParameterInfo {
     const char* source;   // paper and equation, standard, or "choice: why"
     const char* meaning;  // one line for people
 };
+
+// One file that a model reads, named by its path. Set like a parameter: slot.name=PATH; an empty path: none.
+struct FileInfo {
+    const char* name;
+    const char* meaning;                                // one line for people
+    Result<void> (*check)(const std::string& path);     // errors name the file and what may be in it
+};
+// Paths by name of the file; what is not set does not appear.
+using FilePaths = std::map<std::string, std::string, std::less<>>;
 
 // What the display can show: where tone maps end.
 struct DisplayRange {
@@ -80,6 +91,7 @@ struct ModelContext {
     std::vector<EyeGeometry> views;      // all of one size
     DisplayRange display;
     std::uint64_t seed = 1;
+    bool repeatable = true;              // work of other threads is waited for, so that two runs give the same bits; false: no frame waits
 };
 
 // A model on the GPU.
@@ -88,6 +100,8 @@ public:
     virtual ~Model() = default;
     // `parameters` as in the entry's list, already checked. Called before the first record() and whenever the user changes one.
     virtual void set_parameters(std::span<const float> parameters) = 0;
+    // The files of the entry's list, already checked; called before set_parameters(). On an error what was set before stays.
+    virtual Result<void> set_files(const FilePaths&) { return {}; }
     // True when these parameters change nothing for any scene: the model is not recorded at all.
     virtual bool is_identity() const { return false; }
     // True when these parameters leave every picture alone whose light is within the display's range (FrameInput::within_display), once the
@@ -157,6 +171,7 @@ class ReferenceModel {
 public:
     virtual ~ReferenceModel() = default;
     virtual void apply(ReferenceFrame& frame, std::span<const float> parameters) = 0;
+    virtual Result<void> set_files(const FilePaths&) { return {}; }
     // As PlansTone::plan() and ObservesRetina::observe().
     virtual void plan(ReferenceFrame&, std::span<const float>) {}
     virtual void observe(ReferenceFrame&, std::span<const float>) {}
@@ -169,8 +184,11 @@ struct ModelEntry {
     std::span<const ParameterInfo> parameters;
     Result<std::unique_ptr<Model>> (*create)(const ModelContext&);
     std::unique_ptr<ReferenceModel> (*create_reference)();
+    std::span<const FileInfo> files = {};
 };
 
+// Whether any model of the slot reads a file of this name.
+bool names_file(std::string_view slot, std::string_view name);
 // All models, in pipeline order (generated from models.list).
 std::span<const ModelEntry* const> models();
 // Null when there is none.

@@ -29,7 +29,7 @@ Result<void> choose(ModelOfSlot& chosen, std::string_view slot, std::string_view
     }
     const ModelEntry* entry = find_model(slot, model);
     if (!entry) return usage_error(fmt::format("The slot '{}' has no model '{}'. Models: {}.", slot, model, fmt::join(model_names(slot), ", ")));
-    chosen[std::string(slot)] = {entry, default_parameters(*entry)};
+    chosen[std::string(slot)] = {entry, default_parameters(*entry), {}};
     return {};
 }
 
@@ -48,7 +48,25 @@ Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::stri
         choice.parameters[i] = static_cast<float>(value);
         return {};
     }
+    for (const FileInfo& file : choice.entry->files) names.emplace_back(file.name);
     return usage_error(fmt::format("The model '{}' has no parameter '{}'. Parameters: {}.", choice.entry->name, name, fmt::join(names, ", ")));
+}
+
+// False when the model has no file of this name.
+Result<bool> set_file(ModelOfSlot& chosen, std::string_view slot, std::string_view name, const std::string& path) {
+    const auto found = chosen.find(slot);
+    if (found == chosen.end()) return false;
+    for (const FileInfo& info : found->second.entry->files) {
+        if (name != info.name) continue;
+        if (path.empty()) {
+            found->second.files.erase(info.name);
+            return true;
+        }
+        if (const auto good = info.check(path); !good) return usage_error(fmt::format("{}.{}: {}", slot, name, good.error().message));
+        found->second.files[info.name] = path;
+        return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -78,12 +96,15 @@ Result<Selection> select(std::string_view preset, const std::vector<std::string>
         const auto equals = text.find('='), dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals)
             return usage_error(fmt::format("--set {}: write SLOT.PARAMETER=VALUE.", text));
+        const std::string_view slot = std::string_view(text).substr(0, dot), name = std::string_view(text).substr(dot + 1, equals - dot - 1);
+        ENTOPTIC_TRY(is_file, set_file(chosen, slot, name, text.substr(equals + 1)));
+        if (is_file) continue;
         double value = 0;
         const char* end = text.data() + text.size();
         const auto parsed = std::from_chars(text.data() + equals + 1, end, value);
         if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(value))
             return usage_error(fmt::format("--set {}: '{}' is not a number.", text, text.substr(equals + 1)));
-        ENTOPTIC_CHECK(set_parameter(chosen, std::string_view(text).substr(0, dot), std::string_view(text).substr(dot + 1, equals - dot - 1), value));
+        ENTOPTIC_CHECK(set_parameter(chosen, slot, name, value));
     }
     Selection selection{std::string(preset), {}};
     for (const ModelEntry* entry : models())

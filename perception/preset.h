@@ -13,6 +13,7 @@ namespace entoptic::perception {
 struct Choice {
     const ModelEntry* entry = nullptr;
     std::vector<float> parameters;     // in the order of entry->parameters
+    FilePaths files = {};              // of entry->files
 };
 
 // A complete choice: models in pipeline order; slots that are `none` do not appear.
@@ -32,10 +33,11 @@ struct Preset {
     std::vector<PresetParameter> parameters;                             // that differ from the models' defaults
 };
 std::span<const Preset> presets();
-inline constexpr std::string_view default_preset = "luidolt2020";
+inline constexpr std::string_view default_preset = "combined";
 
-// `models` holds "slot=model" (model may be "none"), `settings` "slot.parameter=value"; later ones win.
-// Errors (usage) name the choices there are: unknown preset, slot, model, parameter; value not a number or out of range.
+// `models` holds "slot=model" (model may be "none"), `settings` "slot.parameter=value" or "slot.file=path"; later ones win.
+// Errors (usage) name the choices there are: unknown preset, slot, model, parameter; value not a number or out of range; a file that the
+// model cannot read.
 Result<Selection> select(std::string_view preset, const std::vector<std::string>& models = {}, const std::vector<std::string>& settings = {});
 
 }  // namespace entoptic::perception

@@ -52,6 +52,7 @@ Result<void> Stage::allocate(const StageOptions& options) {
     context_.views = options.views;
     context_.display = options.display;
     context_.seed = options.seed;
+    context_.repeatable = options.repeatable;
     const auto buffer = [&](gpu::Buffer& into, std::size_t bytes, gpu::BufferKind kind, const char* name) -> Result<void> {
         ENTOPTIC_TRY(made, gpu::Buffer::create(device_, bytes, kind, name));
         into = std::move(made);
@@ -108,6 +109,8 @@ Result<Stage::Slot> Stage::make_slot(const Choice& choice) {
     slot.gate = std::move(gate);
     slot.gate_readback = std::move(readback);
     auto model = choice.entry->create(context_);
+    const auto files = model ? (*model)->set_files(choice.files) : Result<void>{};
+    if (!files) model = tl::unexpected(files.error());
     if (model) {
         slot.model = std::move(*model);
         slot.model->set_parameters(choice.parameters);
@@ -120,9 +123,16 @@ Result<Stage::Slot> Stage::make_slot(const Choice& choice) {
 }
 
 Result<void> Stage::select(const Selection& selection) {
+    const auto kept_slot = [&](const Choice& choice) {
+        return std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.model && s.choice.entry == choice.entry; });
+    };
+    // Files first: they may have gone since the selection was made, and then nothing changes.
+    for (const Choice& choice : selection.choices)
+        if (const auto kept = kept_slot(choice); kept != slots_.end() && kept->choice.files != choice.files)
+            ENTOPTIC_CHECK(kept->model->set_files(choice.files));
     std::vector<Slot> next;
     for (const Choice& choice : selection.choices) {
-        const auto kept = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.model && s.choice.entry == choice.entry; });
+        const auto kept = kept_slot(choice);
         if (kept != slots_.end()) {
             kept->model->set_parameters(choice.parameters);
             kept->choice = choice;

@@ -16,6 +16,7 @@ struct StageOptions {
     DisplayRange display;
     Selection selection;
     std::uint64_t seed = 1;
+    bool repeatable = true;            // see ModelContext
 };
 
 // What one model did in one frame.
@@ -116,7 +117,7 @@ private:
     template <class Part> void record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input);
 
     gpu::Device& device_;
-    ModelContext context_{device_, {}, {}, 1};
+    ModelContext context_{device_, {}, {}, 1, true};
     Selection selection_;
     FrameInput input_;
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;

@@ -20,12 +20,13 @@ FN real tone_between(real log10_a, real log10_b, real part) { return exp(LIT(2.3
 
 ENTOPTIC_MATH_END
 
-// Displayed luminance (cd/m²) of scene luminance y: exact on the straight part, else from the table (1 % between entries). A macro,
-// because GLSL would copy the table into a function.
+// Displayed luminance (cd/m²) of scene luminance y: exact on the straight part, else from the table (1 % between entries), never less than
+// at the end of the straight part. A macro, because GLSL would copy the table into a function.
 #define ENTOPTIC_DISPLAYED_LUMINANCE(curve, y)                                                                                     \
     ((y) <= real((curve).straight_until_cd_m2)                                                                                     \
          ? (y) * real((curve).exposure)                                                                                            \
-         : tone_between(real((curve).log10_displayed[uint(tone_place(y))]),                                                        \
-                        real((curve).log10_displayed[min(uint(tone_place(y)) + 1u, tone_points - 1u)]), fract(tone_place(y))))
+         : max(real((curve).straight_until_cd_m2) * real((curve).exposure),                                                        \
+               tone_between(real((curve).log10_displayed[uint(tone_place(y))]),                                                    \
+                            real((curve).log10_displayed[min(uint(tone_place(y)) + 1u, tone_points - 1u)]), fract(tone_place(y)))))
 
 #endif

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what is missing, builds, and shows what Entoptic does: a small office seen on the virtual headset by day, at dusk, by starlight
-# and at night with a lamp, each without simulation (`off`) and as an eye sees it (`luidolt2020`). Needs no headset and no GPU.
+# and at night with a lamp, each without simulation (`off`) and as an eye sees it (`combined`). Needs no headset and no GPU.
 #   tools/demo.sh [--panel WxH] [--frames N] [--output FOLDER]
 . "$(dirname "$0")/common.sh"
 
@@ -47,17 +47,17 @@ shot() {
 }
 
 say "Running the office on the virtual headset (2 x $panel, $frames frames a run)"
-for preset in off luidolt2020; do
+for preset in off combined luidolt2020; do
     shot day "$preset" --light day --lamp off
     shot dusk "$preset" --light dusk --lamp off
     shot starlight "$preset" --light starlight --lamp off
     shot lamp "$preset" --light night --lamp on
 done
 
-say "Pictures: the left eye's view through the lens, before (off) and after (luidolt2020)"
+say "Pictures: the left eye's view through the lens, before (off), as a wearer is shown it (combined), and a paper's picture (luidolt2020)"
 for name in day dusk starlight lamp; do
-    printf '  %s  %s\n' "$output/office_${name}_off.png" "$output/office_${name}_luidolt2020.png"
+    printf '  %s  %s  %s\n' "$output/office_${name}_off.png" "$output/office_${name}_combined.png" "$output/office_${name}_luidolt2020.png"
 done
 printf '  What the panel itself shows: %s\n' "$output/office_*_panel.png"
-say "Report: $output/lamp_luidolt2020.json"
+say "Report: $output/lamp_combined.json"
 printf '  One a run: %s\n' "$output/*.json"

@@ -93,7 +93,7 @@ TEST_F(Command, RunHandsThroughWhatTheApplicationDoes) {
 }
 
 TEST_F(Command, RunSetsTheRuntimeAndLeavesNothingBehind) {
-    const auto outcome = entoptic({"run", "--panel", "320x360", "--set", "tone.key_scale=2", "--set", "tone.key_scale=3", "--", "sh", "-c",
+    const auto outcome = entoptic({"run", "--panel", "320x360", "--set", "tone.knee=0.7", "--set", "tone.knee=0.75", "--", "sh", "-c",
                                    "cat $XR_RUNTIME_JSON $ENTOPTIC_CONFIG"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("libopenxr_entoptic.so"), std::string::npos) << outcome.out;
@@ -131,7 +131,7 @@ TEST_F(Command, RunChecksItsOptionsFirst) {
     expect_error(2, "lockstep", call({"--clock", "sundial"}));
     expect_error(2, "luidolt2020", call({"--preset", "nonsense"}));
     expect_error(2, "SLOT=NAME", call({"--model", "glare"}));
-    expect_error(2, "tone.key_scale", call({"--set", "tone.key_scale=lots"}));
+    expect_error(2, "tone.knee", call({"--set", "tone.knee=lots"}));
     expect_error(2, "--dump", call({"--dump-every", "3"}));
     expect_error(2, "panel", call({"--dump", path("d"), "--dump-stages", "warp,soup"}));
     expect_error(2, "luminance", call({"--luminance", "1e9"}));

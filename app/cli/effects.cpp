@@ -24,7 +24,9 @@ Json parameter_json(const ParameterInfo& p) {
 Json model_json(const ModelEntry& entry) {
     Json parameters = Json::array();
     for (const ParameterInfo& p : entry.parameters) parameters.push_back(parameter_json(p));
-    return {{"name", entry.name}, {"summary", entry.summary}, {"parameters", parameters}};
+    Json files = Json::array();
+    for (const FileInfo& f : entry.files) files.push_back({{"name", f.name}, {"meaning", f.meaning}});
+    return {{"name", entry.name}, {"summary", entry.summary}, {"parameters", parameters}, {"files", files}};
 }
 
 std::string_view model_of(const Preset& preset, std::string_view slot) {

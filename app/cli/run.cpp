@@ -72,7 +72,9 @@ void add_settings(Values& values, const std::vector<std::string>& settings) {
         const auto dot = name.find('.');
         const std::string key = fmt::format("settings.{}.{}", toml_string(name.substr(0, dot)), toml_string(name.substr(dot + 1)));
         std::erase_if(last, [&](const auto& entry) { return entry.first == key; });
-        last.emplace_back(key, fmt::format("{:.17e}", number_from(text.substr(name.size() + 1)).value_or(0)));
+        const std::string value = text.substr(name.size() + 1);
+        const auto number = number_from(value);
+        last.emplace_back(key, number ? fmt::format("{:.17e}", *number) : toml_string(value));
     }
     values.insert(values.end(), last.begin(), last.end());
 }

@@ -1,5 +1,6 @@
 // labels: gpu
 // `entoptic simulate` as people call it: what comes out, and what is said when what goes in is bad.
+#include <map>
 #include "app/testing/command_line.h"
 
 #include <cmath>
@@ -59,7 +60,8 @@ TEST_F(Simulate, EyesFocusOnTheDistanceInChannelZ) {
         }
     const std::string in = picture("a.exr", scene, 1.0f, depth);
     const auto contrast = [&](const std::string& gaze, int from, const std::vector<std::string>& more) {
-        std::vector<std::string> call{"simulate", in, "-o", path("out.exr"), "--fov", "7", "--preset", "off", "--model", "dof=dioptric_disc", "--gaze", gaze, "--pupil", "5"};
+        std::vector<std::string> call{"simulate", in,      "-o",      path("out.exr"),     "--fov",  "7",  "--preset",
+                                      "off",      "--model", "dof=dioptric_disc", "--gaze", gaze, "--pupil", "5"};
         call.insert(call.end(), more.begin(), more.end());
         const auto outcome = entoptic(call);
         EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -157,7 +159,7 @@ TEST_F(Simulate, TheScaleComesFromTheFileOrTheUserAndIsNamed) {
 TEST_F(Simulate, AdaptationGoesFromWhereItWasToTheScene) {
     const std::string scene = picture("a.exr", even(48, 48, 100));
     const auto outcome =
-        entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "60", "--adapted-to", "0.01", "--at", "0,0.1,2", "--json"});
+        entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "60", "--preset", "luidolt2020", "--adapted-to", "0.01", "--at", "0,0.1,2", "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const auto report = outcome.json();
     const auto pictures = report["pictures"];
@@ -273,12 +275,30 @@ TEST_F(Simulate, WrongOptionsAreUsageErrors) {
 TEST_F(Simulate, AnObserverChangesWhatIsChosenAndNoMore) {
     write("config/entoptic/observers/tester.toml", "description = \"brighter\"\n[settings]\ntone.key_scale = 2\nnoslot.age = 80\n");
     const std::string scene = picture("a.exr", even(16, 16, 10));
-    ASSERT_EQ(entoptic({"simulate", scene, "-o", path("plain.exr"), "--fov", "60"}).status, 0);
-    const auto outcome = entoptic({"simulate", scene, "-o", path("observer.exr"), "--fov", "60", "--observer", "tester"});
+    ASSERT_EQ(entoptic({"simulate", scene, "-o", path("plain.exr"), "--fov", "60", "--preset", "luidolt2020"}).status, 0);
+    const auto outcome = entoptic({"simulate", scene, "-o", path("observer.exr"), "--fov", "60", "--preset", "luidolt2020", "--observer", "tester"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_GT(mean(result("observer.exr")), 1.1f * mean(result("plain.exr")));
     write("config/entoptic/observers/broken.toml", "[settings]\ntone.key_scale = \"much\"\n");
     expect_error(2, "broken.toml:2", {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken"});
+}
+
+TEST_F(Simulate, ObserversThatComeWithTheProgramAreTheirAge) {
+    ImageF lamp = even(64, 64, 0.5f);
+    for (int y = 30; y < 34; ++y)
+        for (int x = 30; x < 34; ++x)
+            for (int c = 0; c < 3; ++c) lamp.at(x, y, c) = 1e5f;
+    const std::string scene = picture("lamp.exr", lamp);
+    std::map<std::string, float> veil;
+    for (const std::string name : {"young", "70-years", "early-cataract", "night-driver"}) {
+        const auto outcome = entoptic({"simulate", scene, "-o", path("veil.exr"), "--fov", "30", "--model", "tone=none", "--observer", name});
+        ASSERT_EQ(outcome.status, 0) << name << outcome.err;
+        veil[name] = result("veil.exr").at(5, 32, 1);
+    }
+    EXPECT_GT(veil["70-years"], 1.5f * veil["young"]);
+    EXPECT_GT(veil["early-cataract"], veil["70-years"]);
+    write("config/entoptic/observers/old.toml", "[settings]\nglare.age = 900\n");
+    expect_error(2, "glare.age = 900 is out of range: 10 to 90 years", {"simulate", scene, "-o", path("out.exr"), "--fov", "30", "--observer", "old"});
 }
 
 }  // namespace

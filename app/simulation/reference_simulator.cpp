@@ -14,7 +14,11 @@ using namespace perception;
 class ReferenceSimulator final : public Simulator {
 public:
     explicit ReferenceSimulator(const SimulatorOptions& options) : options_(options) {
-        for (const Choice& choice : options_.selection.choices) models_.push_back(choice.entry->create_reference());
+        for (const Choice& choice : options_.selection.choices) {
+            models_.push_back(choice.entry->create_reference());
+            // The selection has checked them; what has gone since makes the reference fail, not the run.
+            if (models_.back() && !models_.back()->set_files(choice.files)) models_.back().reset();
+        }
     }
     void set_adaptation(double cd_m2) override { adaptation_ = cd_m2; }
     Result<void> frame(const ImageF& scene, const ImageF& depth, const FrameInput& input, bool want_picture) override {

@@ -34,6 +34,7 @@ public:
         rate_hz_ = v[6];
     }
     bool is_identity() const override { return parameters_[0] == 0; }
+    bool obeys_residual_law() const override { return parameters_[1] == 0 && parameters_[4] == 0 && parameters_[7] == 0; }
 };
 
 }  // namespace

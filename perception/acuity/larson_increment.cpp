@@ -32,6 +32,7 @@ public:
         rate_hz_ = v[5];
     }
     bool is_identity() const override { return parameters_[0] == 0; }
+    bool obeys_residual_law() const override { return parameters_[1] == 0 && parameters_[3] == 0; }
 };
 
 }  // namespace

@@ -106,6 +106,7 @@ public:
     }
     void set_parameters(std::span<const float> values) override { std::memcpy(&params_, values.data(), sizeof(params_)); }
     bool is_identity() const override { return params_.strength == 0; }
+    bool obeys_residual_law() const override { return params_.photographic <= 0.5f; }
 
     Result<void> observe(StageIo& io) override {
         ENTOPTIC_CHECK(fit_map(io.commands));

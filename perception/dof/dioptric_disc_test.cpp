@@ -28,7 +28,8 @@ FrameInput looking(double pupil_mm = 4.49, vec3 gaze = {0, 0, -1}) {
     return input;
 }
 
-ImageD twin(const ImageF& picture, const ImageF& depth, const EyeGeometry& g, double focus, const DioptricDiscParams& p, double pupil = 4.49) {
+ImageD twin(const ImageF& picture, const ImageF& depth, const EyeGeometry& g, double focus, const DioptricDiscParams& p,
+            double pupil = 4.49) {
     const auto radii = [&](double d, double rad) { return dioptric_disc::blur_radii_px(p, d, focus, pupil, rad); };
     return gathered_twin(picture, depth, g, focus, p.lca > 0.5f ? dof_colours_lca : dof_colours_alike, radii);
 }
@@ -54,7 +55,8 @@ TEST(DioptricDisc, AngleIsThatOfEquation12) {
     for (const OracleRow& row : oracle("liu_coc")) {
         const double defocus = 1e3 / row.at("depth_mm") - 1e3 / row.at("focus_mm");
         const double disc_deg = dof::disc_angle_rad(row.at("pupil_mm"), defocus) / degree;
-        worst = std::max({worst, relative_error(disc_deg, row.at("blur_disc_deg"), 1e-3), relative_error(disc_deg * 13.85, row.at("blur_disc_px_13.85ppd"), 1e-3)});
+        worst = std::max({worst, relative_error(disc_deg, row.at("blur_disc_deg"), 1e-3),
+                          relative_error(disc_deg * 13.85, row.at("blur_disc_px_13.85ppd"), 1e-3)});
         // On the retina: times the focal length.
         worst = std::max(worst, relative_error(disc_deg * degree * 22.3, row.at("eq12_corrected_mm"), 1e-3));
     }
@@ -124,7 +126,7 @@ TEST(DioptricDisc, GpuAgreesWithDoubleAndWithTheReference) {
 
 TEST(DioptricDisc, PointBecomesAnEvenDiscOfItsLight) {
     const int size = 101;
-    const EyeGeometry g = rectilinear(size, size, 7.3);   // 13.9 ppd, the same everywhere within 0.5 %
+    const EyeGeometry g = rectilinear(size, size, 7.3);  // 13.9 ppd, the same everywhere within 0.5 %
     StageRunner runner({g}, model({"focus_dioptre=0", "deadband_dioptre=0"}));
     for (float metres : {0.5f, 0.25f, 0.1f}) {
         const ImageF out = runner.run(point(size, size, 1000), looking(), distance(size, size, metres));
@@ -158,10 +160,10 @@ TEST(DioptricDisc, ConstantPictureStaysAndAPlaneKeepsItsLight) {
 TEST(DioptricDisc, NothingLeaksOverTheEdgeOfWhatIsSharp) {
     const int width = 120, height = 40, edge = 60;
     const EyeGeometry g = rectilinear(width, height, 8.6);
-    ImageF picture = uniform(width, height, 1);   // near, dark
+    ImageF picture = uniform(width, height, 1);  // near, dark
     for (int y = 0; y < height; ++y)
         for (int x = edge; x < width; ++x)
-            for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1000;   // far, bright
+            for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1000;  // far, bright
     const ImageF depth = two_distances(width, height, edge, 0.4f, 50);
     // Focused on the near half: it stays to the bit, and the bright half keeps its brightness up to the edge.
     StageRunner near({g}, model({"focus_dioptre=2.5"}));
@@ -180,7 +182,7 @@ TEST(DioptricDisc, UnknownDepthIsLeftAlone) {
     const ImageF picture = textured(70, 33, 30);
     const EyeGeometry g = rectilinear(70, 33, 5);
     StageRunner runner({g}, model());
-    EXPECT_EQ(runner.run(picture, looking()).data, picture.data);   // no depth came
+    EXPECT_EQ(runner.run(picture, looking()).data, picture.data);  // no depth came
     EXPECT_TRUE(runner.stage().effects().at(0).gated);
     for (float unknown : {0.0f, -3.0f, std::numeric_limits<float>::quiet_NaN()}) {
         EXPECT_EQ(runner.run(picture, looking(), distance(70, 33, unknown)).data, picture.data);
@@ -264,7 +266,7 @@ TEST(DioptricDisc, VergenceWinsWhenAskedFor) {
     const ImageF picture = textured(64, 40, 30), depth = distance(64, 40, 0.4f);
     StageRunner runner({g}, model({"use_vergence=1"}));
     FrameInput input = looking();
-    EXPECT_EQ(runner.run(picture, input, depth).data, picture.data);   // not measured: depth at the gaze
+    EXPECT_EQ(runner.run(picture, input, depth).data, picture.data);  // not measured: depth at the gaze
     input.vergence_dioptre = 0;
     EXPECT_NE(runner.run(picture, input, depth).data, picture.data);
     input.vergence_dioptre = 2.5f;
@@ -286,8 +288,8 @@ TEST(DioptricDisc, FocusFollowsTheSameAtAnyFrameRate) {
     };
     const ImageF slow = after(9, 0.2), fast = after(200, 0.2);
     EXPECT_LT(summary(relative_errors(slow, fast, 1)).max, 2e-3);
-    EXPECT_NE(slow.data, picture.data);                  // still on its way
-    EXPECT_EQ(after(1, 3).data, picture.data);           // arrived but for e^-10, within the deadband
+    EXPECT_NE(slow.data, picture.data);         // still on its way
+    EXPECT_EQ(after(1, 3).data, picture.data);  // arrived but for e^-10, within the deadband
     // Against the law itself.
     DioptricDiscParams p = defaults();
     const double focus = dof::followed(0.05, 1 / 0.3, 0.2, 0.3);
@@ -331,7 +333,7 @@ TEST(DioptricDisc, RouletteIsCloseToAllPixels) {
     ledger(name, "roulette 4 dioptre 6 mm", "sampled against all p99 code", codes.p99);
     ledger(name, "roulette 4 dioptre 6 mm", "sampled against all mean dEITP", itp.mean);
     EXPECT_LT(codes.mean, 4);
-    EXPECT_EQ(sampled.data, some.run(picture, looking(6), depth).data);   // stands still
+    EXPECT_EQ(sampled.data, some.run(picture, looking(6), depth).data);  // stands still
     for (float v : some.run(uniform(width, height, 42), looking(6), depth).data) EXPECT_NEAR(v, 42, 42e-5);
 }
 
@@ -358,7 +360,8 @@ TEST(DioptricDisc, HardCasesStayFinite) {
             StageRunner runner({rectilinear(size.width, size.height, 100)}, model({"lca=1", roulette, "focus_dioptre=0"}));
             for (float y : {0.0f, 1e8f, nan})
                 for (float metres : {nan, 1e-30f, 0.05f, 1e30f, infinitely_far})
-                    EXPECT_TRUE(all_finite(runner.run(uniform(size.width, size.height, y), looking(9), distance(size.width, size.height, metres))));
+                    EXPECT_TRUE(
+                        all_finite(runner.run(uniform(size.width, size.height, y), looking(9), distance(size.width, size.height, metres))));
         }
     // A fine lens with everything nearest: discs end at 32 pixels.
     StageRunner runner({rectilinear(100, 40, 0.5)}, model({"focus_dioptre=0"}));

@@ -103,8 +103,9 @@ Result<const gpu::Kernel*> DofPasses::gathering(const DofSettings& settings) {
     for (const Gathering& made : gatherings_)
         if (made.colours == settings.colours && made.roulette == settings.roulette) return &made.gather;
     Gathering next{{}, settings.colours, settings.roulette};
-    ENTOPTIC_CHECK(make(next.gather, *device_,
-                        {name_ + ".gather", dof_gather_comp_spv, buffers(5), sizeof(GatherPush), {settings.colours, settings.roulette ? 1u : 0u}}));
+    ENTOPTIC_CHECK(
+        make(next.gather, *device_,
+             {name_ + ".gather", dof_gather_comp_spv, buffers(5), sizeof(GatherPush), {settings.colours, settings.roulette ? 1u : 0u}}));
     gatherings_.push_back(std::move(next));
     return &gatherings_.back().gather;
 }
@@ -144,8 +145,8 @@ Result<void> DofPasses::record(StageIo& io, const DofSettings& settings, std::sp
         io.commands.barrier();
     }
     const uint wraps = views_[0].kind == geometry_equirect ? 1u : 0u;
-    io.commands.dispatch(plan_, {tile_radius_, list_, reach_, io.gate}, PlanPush{io.tiles_x, io.tiles_y, io.views, wraps, io.dioptre ? 1u : 0u},
-                         {1, 1, 1});
+    io.commands.dispatch(plan_, {tile_radius_, list_, reach_, io.gate},
+                         PlanPush{io.tiles_x, io.tiles_y, io.views, wraps, io.dioptre ? 1u : 0u}, {1, 1, 1});
     if (!io.dioptre) return {};
     io.commands.barrier();
     const gpu::Binding bindings[] = {*io.dioptre, io.solid_angle, eyes_, focus_, pixels_};

@@ -52,7 +52,7 @@ bool passes(int colour, int row, int rows, int side) {
 
 // Share of the disc that the rows which pass it hold.
 double passed(double radius, int rows, int colour, int side) {
-    static thread_local std::map<std::tuple<double, int, int>, double> known;   // few radii occur often
+    static thread_local std::map<std::tuple<double, int, int>, double> known;  // few radii occur often
     const auto [entry, is_new] = known.try_emplace({radius, colour, side}, 0);
     for (int j = -rows - 1; is_new && j <= rows + 1; ++j)
         for (int i = -rows - 1; i <= rows + 1; ++i)

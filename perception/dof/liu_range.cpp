@@ -11,7 +11,8 @@ namespace {
 constexpr ParameterInfo parameters[] = {
     {"strength", "1", 0, 1, 1, "choice: taste", "multiplies the width of the blur; 0 switches it off"},
     {"focus_dioptre", "1/m", -1, 20, -1, "choice: negative is the eye's own", "fixed focus; negative: the eyes focus on what they look at"},
-    {"use_vergence", "bool", 0, 1, 0, "choice: 1 degree of error is 0.28 dioptre", "1 focuses where the lines of sight meet, when measured"},
+    {"use_vergence", "bool", 0, 1, 0, "choice: 1 degree of error is 0.28 dioptre",
+     "1 focuses where the lines of sight meet, when measured"},
     {"focus_tau_s", "s", 0.01f, 5, 0.3f, "choice: accommodation takes 0.3 to 1 s", "time constant with which the focus follows"},
     {"max_radius_px", "px", 1, 32, 3, "choice: seven rows leave three with all colours", "widest disc, at 13.85 pixels per degree"},
     {"lca", "bool", 0, 1, 0, "Liu 2021, section 3.3.2", "1 colours the kernel's outer rows"},
@@ -24,8 +25,8 @@ class LiuRange final : public Model, public NeedsDepth {
 public:
     static Result<std::unique_ptr<Model>> create(const ModelContext& context) {
         auto model = std::make_unique<LiuRange>();
-        ENTOPTIC_TRY(passes,
-                     DofPasses::create(context, "dof.liu_range", liu_range_range_comp_spv, liu_range_pixels_comp_spv, sizeof(LiuRangeParams)));
+        ENTOPTIC_TRY(passes, DofPasses::create(context, "dof.liu_range", liu_range_range_comp_spv, liu_range_pixels_comp_spv,
+                                               sizeof(LiuRangeParams)));
         model->passes_ = std::move(passes);
         return model;
     }
@@ -47,7 +48,7 @@ private:
 std::unique_ptr<ReferenceModel> make_liu_range_reference();
 
 extern const ModelEntry liu_range_entry;
-const ModelEntry liu_range_entry{
-    "dof", "liu_range", "Blur in units of the depth of field (Liu 2021, equation 13, in dioptres)", parameters, &LiuRange::create, &make_liu_range_reference};
+const ModelEntry liu_range_entry{"dof",      "liu_range",       "Blur in units of the depth of field (Liu 2021, equation 13, in dioptres)",
+                                 parameters, &LiuRange::create, &make_liu_range_reference};
 
 }  // namespace entoptic::perception

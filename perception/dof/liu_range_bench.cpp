@@ -12,7 +12,8 @@ void DofLiuRange(benchmark::State& state) {
     const bool in_focus = state.range(0) == 0;
     const ImageF depth = in_focus ? distance(1440, 1600, 2) : floor_with_post(1440, 1600, 0.4f, 30, 1);
     const std::vector<std::string> settings = {"dof.focus_dioptre=" + std::string(in_focus ? "0.5" : "2"),
-                                               "dof.roulette=" + std::to_string(state.range(1)), "dof.lca=" + std::to_string(state.range(2))};
+                                               "dof.roulette=" + std::to_string(state.range(1)),
+                                               "dof.lca=" + std::to_string(state.range(2))};
     time_effect(state, vive_lens(), picture, only({"dof=liu_range"}, settings), "perceive.dof", depth);
 }
 BENCHMARK(DofLiuRange)

@@ -10,11 +10,11 @@
 namespace entoptic::perception {
 namespace {
 
-constexpr double f = 22.3;   // mm
-const double criterion = f * std::tan(std::numbers::pi / 180 / 60);   // c, mm
+constexpr double f = 22.3;                                           // mm
+const double criterion = f * std::tan(std::numbers::pi / 180 / 60);  // c, mm
 
 struct Limits {
-    double near, far;   // mm
+    double near, far;  // mm
 };
 // Equations 4 and 5; where the denominator of 4 is not positive, all that is far is sharp (trap Li2).
 Limits limits(double focus, double pupil) {
@@ -40,7 +40,8 @@ public:
             disc.side = depth > focus ? -1 : depth < focus ? 1 : 0;
             if (depth >= sharp.near && depth <= sharp.far) return disc;
             const double ppd = std::numbers::pi / 180 / pixel_rad;
-            const double place = std::min(1.0, std::abs(parameter(7) > 0.5 ? in_metres(depth, focus, sharp) : in_dioptres(depth, focus, sharp)));
+            const double place =
+                std::min(1.0, std::abs(parameter(7) > 0.5 ? in_metres(depth, focus, sharp) : in_dioptres(depth, focus, sharp)));
             for (double& radius : disc.radius_px) radius = std::min(32.0, parameter(0) * parameter(4) * place * ppd / 13.85);
             return disc;
         };

@@ -30,7 +30,8 @@ ImageD twin(const ImageF& picture, const ImageF& depth, const EyeGeometry& g, co
 ImageD reference(const ImageF& picture, const ImageF& depth, const EyeGeometry& g, const LiuRangeParams& p) {
     ReferenceFrame frame{convert<double>(picture), g, {}, looking().eyes[0], 0, true};
     frame.dioptre = dioptres(depth);
-    const std::vector<float> values{p.strength, p.focus_dioptre, p.use_vergence, p.focus_tau_s, p.max_radius_px, p.lca, p.roulette, p.as_printed};
+    const std::vector<float> values{p.strength,      p.focus_dioptre, p.use_vergence, p.focus_tau_s,
+                                    p.max_radius_px, p.lca,           p.roulette,     p.as_printed};
     find_model("dof", "liu_range")->create_reference()->apply(frame, values);
     return frame.image;
 }
@@ -42,8 +43,10 @@ TEST(LiuRange, LimitsAreThoseOfTheTable) {
         const double near = 1e3 / dof::near_limit_dioptre(pupil, focus), far = dof::far_limit_dioptre(pupil, focus);
         worst = std::max(worst, relative_error(near, row.at("DN_eq5_mm")));
         // A negative distance means that everything beyond is sharp (trap Li2).
-        if (row.at("DF_eq4_mm_negative_means_infinite") > 0) worst = std::max(worst, relative_error(1e3 / far, row.at("DF_eq4_mm_negative_means_infinite")));
-        else EXPECT_EQ(far, 0);
+        if (row.at("DF_eq4_mm_negative_means_infinite") > 0)
+            worst = std::max(worst, relative_error(1e3 / far, row.at("DF_eq4_mm_negative_means_infinite")));
+        else
+            EXPECT_EQ(far, 0);
         EXPECT_NEAR(dof::depth_of_field_dioptre(pupil, 0), row.at("halfwidth_dioptre"), 1e-6);
     }
     ledger(name, "equations 4 and 5", "double against oracle max", worst);
@@ -78,7 +81,7 @@ TEST(LiuRange, IsSharpWithinTheDepthOfField) {
     EXPECT_EQ(liu_range::blur_radii_px(p, 1 - 0.99 * h, 1, 4.49, 1.26e-3).x, 0);
     EXPECT_GT(liu_range::blur_radii_px(p, 1 + 1.01 * h, 1, 4.49, 1.26e-3).x, 1.4);
     EXPECT_NEAR(liu_range::blur_radii_px(p, 8, 1, 4.49, 1.2605e-3).x, 3, 1e-6);
-    EXPECT_NEAR(liu_range::blur_radii_px(p, 8, 1, 4.49, 1.2605e-3 / 2).x, 6, 1e-5);   // an angle, not pixels
+    EXPECT_NEAR(liu_range::blur_radii_px(p, 8, 1, 4.49, 1.2605e-3 / 2).x, 6, 1e-5);  // an angle, not pixels
 }
 
 TEST(LiuRange, GpuAgreesWithDoubleAndWithTheReference) {
@@ -91,7 +94,8 @@ TEST(LiuRange, GpuAgreesWithDoubleAndWithTheReference) {
             for (float focus : {0.0f, 1.2f, 2.45f}) {
                 LiuRangeParams p = defaults();
                 p.lca = lca, p.as_printed = printed, p.focus_dioptre = focus;
-                StageRunner runner({g}, model({"lca=" + std::to_string(lca), "as_printed=" + std::to_string(printed), "focus_dioptre=" + std::to_string(focus)}));
+                StageRunner runner({g}, model({"lca=" + std::to_string(lca), "as_printed=" + std::to_string(printed),
+                                               "focus_dioptre=" + std::to_string(focus)}));
                 const ImageD expected = twin(picture, depth, g, p);
                 const ErrorSummary e = summary(relative_errors(runner.run(picture, looking(), depth), expected, 1e-3));
                 float_worst.p99 = std::max(float_worst.p99, e.p99);
@@ -102,7 +106,7 @@ TEST(LiuRange, GpuAgreesWithDoubleAndWithTheReference) {
     ledger(name, "floor and post 14 ppd", "float against double p99 relative", float_worst.p99);
     ledger(name, "floor and post 14 ppd", "double against reference p99 code", formula.p99);
     ledger(name, "floor and post 14 ppd", "double against reference mean code", formula.mean);
-    EXPECT_LT(float_worst.p99, 2e-4);   // a pixel at the very limit may fall on either side
+    EXPECT_LT(float_worst.p99, 2e-4);  // a pixel at the very limit may fall on either side
     EXPECT_LT(formula.p99, 12);
     EXPECT_LT(formula.mean, 1);
 }
@@ -162,7 +166,7 @@ TEST(LiuRange, PresetIsDepthOfFieldAlone) {
     const Selection selection = value(select("liu2021", {}, {}));
     ASSERT_EQ(selection.choices.size(), 1u);
     EXPECT_EQ(selection.choices[0].entry->name, "liu_range");
-    EXPECT_EQ(selection.choices[0].parameters[5], 1);   // lca
+    EXPECT_EQ(selection.choices[0].parameters[5], 1);  // lca
 }
 
 TEST(LiuRange, HardCasesStayFinite) {

@@ -18,14 +18,17 @@ TEST(VisualPolar, IsThatOfTheTable) {
         cumulated = std::max(cumulated, relative_error(visual_polar::radial(alpha, 80.0), row.at("rho_exact_alphaM80")));
         inverse = std::max(inverse, relative_error(visual_polar::eccentricity_of_radial(row.at("rho_exact_alphaM80"), 80.0), alpha));
         if (std::isnan(row.at("alpha_eq3_of_rho_eq2"))) continue;
-        printed = std::max(printed, relative_error(visual_polar::cumulated_as_printed(alpha) / visual_polar::cumulated_as_printed(80.0), row.at("rho_eq2_alphaM80")));
-        fitted = std::max(fitted, relative_error(visual_polar::eccentricity_fitted(row.at("rho_eq2_alphaM80")), row.at("alpha_eq3_of_rho_eq2")));
+        printed = std::max(printed, relative_error(visual_polar::cumulated_as_printed(alpha) / visual_polar::cumulated_as_printed(80.0),
+                                                   row.at("rho_eq2_alphaM80")));
+        fitted =
+            std::max(fitted, relative_error(visual_polar::eccentricity_fitted(row.at("rho_eq2_alphaM80")), row.at("alpha_eq3_of_rho_eq2")));
         EXPECT_NEAR(visual_polar::eccentricity_fitted(row.at("rho_eq2_alphaM80")) - alpha, row.at("eq3_error_deg"), 1e-6);
     }
-    ledger("foveation.visual_polar", "equations 1 to 3", "double against oracle max", std::max({density, cumulated, inverse, fitted, printed}));
+    ledger("foveation.visual_polar", "equations 1 to 3", "double against oracle max",
+           std::max({density, cumulated, inverse, fitted, printed}));
     EXPECT_LT(density, 1e-8);
     EXPECT_LT(cumulated, 1e-8);
-    EXPECT_LT(inverse, 1e-8);   // the table's rho has 9 digits
+    EXPECT_LT(inverse, 1e-8);  // the table's rho has 9 digits
     EXPECT_LT(printed, 1e-8);
     EXPECT_LT(fitted, 1e-8);
 }
@@ -49,12 +52,14 @@ TEST(VisualPolar, LambertWFulfilsItsEquation) {
 TEST(VisualPolar, DensityIsTheSlopeAndContinuous) {
     for (double alpha : {1.0, 5.0, 8.0, 40.0, 100.0}) {
         const double h = 1e-4;
-        EXPECT_NEAR((visual_polar::cumulated(alpha + h) - visual_polar::cumulated(alpha - h)) / (2 * h), visual_polar::density(alpha), 1e-6 * alpha);
+        EXPECT_NEAR((visual_polar::cumulated(alpha + h) - visual_polar::cumulated(alpha - h)) / (2 * h), visual_polar::density(alpha),
+                    1e-6 * alpha);
     }
     // 36.380 and 36.374: 0.02 % at the fovea's rim.
     EXPECT_NEAR(visual_polar::density(5.79), visual_polar::density(5.790001), 0.01);
     // So the radial coordinate has no kink there.
-    const double before = visual_polar::radial(5.79, 80.0) - visual_polar::radial(5.78, 80.0), after = visual_polar::radial(5.80, 80.0) - visual_polar::radial(5.79, 80.0);
+    const double before = visual_polar::radial(5.79, 80.0) - visual_polar::radial(5.78, 80.0),
+                 after = visual_polar::radial(5.80, 80.0) - visual_polar::radial(5.79, 80.0);
     EXPECT_NEAR(after / before, 1, 2e-3);
 }
 

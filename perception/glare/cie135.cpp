@@ -38,6 +38,7 @@ public:
         parameters_changed();
     }
     bool is_identity() const override { return params_.strength <= 0; }
+    bool obeys_residual_law() const override { return params_.photographic <= 0.5f; }
 
 private:
     GlareSetup setup() override;

@@ -59,6 +59,7 @@ public:
         parameters_changed();
     }
     bool is_identity() const override { return params_.strength <= 0; }
+    bool obeys_residual_law() const override { return params_.photographic <= 0.5f && person() == wearer(); }
 
 private:
     GlareSetup setup() override;

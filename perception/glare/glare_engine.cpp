@@ -4,16 +4,21 @@
 #include "shaders/scene_statistics.h"
 
 #include "perception/glare/glare_apply.comp.h"
+#include "perception/glare/glare_billboard_choice.comp.h"
+#include "perception/glare/glare_billboard_kernel.comp.h"
+#include "perception/glare/glare_billboards.comp.h"
 #include "perception/glare/glare_columns.comp.h"
 #include "perception/glare/glare_coverage.comp.h"
 #include "perception/glare/glare_gate.comp.h"
 #include "perception/glare/glare_gather.comp.h"
 #include "perception/glare/glare_kernel.comp.h"
+#include "perception/glare/glare_lit.comp.h"
 #include "perception/glare/glare_near.comp.h"
 #include "perception/glare/glare_pixels.comp.h"
 #include "perception/glare/glare_rows.comp.h"
 #include "perception/glare/glare_splat.comp.h"
 #include "perception/glare/glare_tiles.comp.h"
+#include "perception/glare/glare_zone.comp.h"
 
 #include <cmath>
 
@@ -50,6 +55,7 @@ RadialProfile make_profile(const std::function<RadialEntry(double)>& entry_of) {
 glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from_rad) {
     const double step = std::log(pi / static_cast<double>(radial_first)) / (radial_entries - 1);
     glm::dvec3 sum{0};
+    if (profile.empty()) return sum;      // of a kernel that is not round
     for (uint i = 0; i < radial_entries; ++i) {
         const double theta = glare::radial_angle(i, static_cast<double>(radial_first), radial_entries);
         // d(omega) = 2 pi sin(theta) dtheta, dtheta = theta d(log theta).
@@ -84,6 +90,11 @@ Result<void> GlareModel::make_kernels() {
         {&gather_veil_, "glare.gather", glare_gather_comp_spv, 5, sizeof(GatherPush), {1}},
         {&near_, "glare.near", glare_near_comp_spv, 6, sizeof(NearPush), {}},
         {&kernel_kernel_, "glare.kernel", glare_kernel_comp_spv, 2, sizeof(KernelPush), {}},
+        {&zone_, "glare.zone", glare_zone_comp_spv, 2, sizeof(ZonePush), {}},
+        {&lit_, "glare.lit", glare_lit_comp_spv, 2, sizeof(BillboardPush), {}},
+        {&billboard_choice_, "glare.billboard_choice", glare_billboard_choice_comp_spv, 2, sizeof(BillboardPush), {}},
+        {&billboard_kernel_, "glare.billboard_kernel", glare_billboard_kernel_comp_spv, 2, sizeof(BillboardPush), {}},
+        {&billboards_, "glare.billboards", glare_billboards_comp_spv, 3, sizeof(BillboardPush), {}},
     };
     for (const Wanted& w : wanted) ENTOPTIC_CHECK(make_kernel(w));
     return {};
@@ -153,7 +164,7 @@ Result<void> GlareModel::make_picture_passes() {
     const uint kept = has(source_scene) ? source_scene : has(source_displayed) ? source_displayed : source_excess;
     for (const GlareTerm& term : setup_.terms)
         ENTOPTIC_CHECK(make_kernel({&pixels_[term.source], "glare.pixels", glare_pixels_comp_spv, 5, sizeof(LatticePush), {grid_.step, term.source}}));
-    ENTOPTIC_CHECK(make_kernel({&apply_, "glare.apply", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, kept, has(source_drawn) ? 1u : 0u}}));
+    ENTOPTIC_CHECK(make_kernel({&apply_, "glare.apply", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, kept, has(source_drawn) ? 1u : 0u, setup_.sigmoid ? 1u : 0u}}));
     return make_kernel({&apply_drawn_, "glare.apply_drawn", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, source_drawn, 0}});
 }
 
@@ -182,7 +193,17 @@ Result<void> GlareModel::make_buffers() {
         {&near_light_, near_field() || has(source_drawn) ? pixels * sizeof(vec3) : 64, "glare.near_light"},
     };
     for (const auto& w : wanted) ENTOPTIC_CHECK(make_buffer(*w.buffer, w.bytes, w.name));
-    return {};
+    return make_billboard_buffers();
+}
+
+Result<void> GlareModel::make_billboard_buffers() {
+    if (setup_.billboard_texels == 0) return {};
+    ENTOPTIC_CHECK(make_buffer(lit_texels_, sizeof(uint) + max_billboards * sizeof(LitTexel), "glare.lit_texels"));
+    // One texel of light, transformed along its row: 1 everywhere.
+    std::vector<vec2> delta(glare_plane, vec2(0));
+    std::fill(delta.begin(), delta.begin() + glare_n, vec2(1, 0));
+    ENTOPTIC_CHECK(make_static(delta_rows_, delta, "glare.delta_rows"));
+    return make_buffer(billboard_, built_.size() * glare_n * glare_n * sizeof(vec3), "glare.billboard");
 }
 
 // Copies and the coverage of the grid: once per parameter set.
@@ -190,6 +211,7 @@ void GlareModel::record_coverage(StageIo& io) {
     gpu::Commands& c = io.commands;
     for (const StaticBuffer* s : {&twiddle_, &taps_, &splat_offsets_, &splat_entries_, &profiles_}) s->record_copy(c);
     c.fill(flags_, 0);
+    if (setup_.billboard_texels > 0) delta_rows_.record_copy(c);
     c.dispatch(coverage_, {io.solid_angle, node_values_}, lattice(io), {gpu::groups_for(nodes(), 64), 1, io.views});
     c.barrier();
     const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 1};
@@ -210,7 +232,7 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     const uint key = key_of(kernel, steps);
     const double pupil_mm = diameter_mm(steps);
     c.barrier();
-    if (!record_far_kernel(io, kernel, pupil_mm)) {
+    if (!record_far_kernel(io, kernel, steps)) {
         const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(safe_weights(kernel, pupil_mm))};
         c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, {glare_n / 64, glare_n, 1});
     }
@@ -221,12 +243,13 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     spectrum.first_key = spectrum.second_key = key;
     c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {glare_n / fft_lines, 2, 1});
     if (std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.kernel == kernel && leaves(t); }))
-        record_node_coverage(io, key);
+        record_node_coverage(io, kernel, key);
+    if (setup_.billboard_texels > 0) record_billboard(io, key);
     built_[key] = steps;
 }
 
 // The share of each node's light that the kernel moves away: the convolution of a picture of ones.
-void GlareModel::record_node_coverage(StageIo& io, uint key) {
+void GlareModel::record_node_coverage(StageIo& io, uint kernel, uint key) {
     gpu::Commands& c = io.commands;
     FftPush convolve = light_rows();
     convolve.input_channels = 1;
@@ -238,11 +261,39 @@ void GlareModel::record_node_coverage(StageIo& io, uint key) {
     c.barrier();
     const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, key, key, key, 0, 1, 1, 0, 0, vec3(1), {}};
     c.dispatch(gather_coverage_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, {gpu::groups_for(nodes(), 256), 1, io.views});
+    for (const GlareTerm& term : setup_.terms)
+        if (term.kernel == kernel && leaves(term)) {
+            record_zone(io, node_coverage_, term.zone, std::size_t(key) * nodes() * io.views, false);
+            break;
+        }
+}
+
+// Weighs one vector a node by how far it lies in the zone.
+void GlareModel::record_zone(StageIo& io, const gpu::Buffer& values, uint zone, std::size_t first, bool gated) {
+    if (setup_.zones < 2) return;
+    const ZonePush push{grid_.nodes_x, grid_.nodes_y, grid_.step, static_cast<uint>(first), zone, setup_.zones};
+    io.commands.barrier();
+    if (gated) io.commands.dispatch_indirect(zone_, {values, io.geometry}, push, io.gate, entry(gate_gather));
+    else io.commands.dispatch(zone_, {values, io.geometry}, push, {gpu::groups_for(nodes(), 256), 1, io.views});
+}
+
+// The kernel as the transforms draw it, in space: its convolution with one texel of light.
+void GlareModel::record_billboard(StageIo& io, uint key) {
+    gpu::Commands& c = io.commands;
+    FftPush convolve = all_rows();
+    convolve.input_channels = 1;
+    convolve.first_key = convolve.second_key = key;
+    c.barrier();
+    c.dispatch(columns_convolve_, {delta_rows_.buffer, work_, twiddle_.buffer, spectra_}, convolve, {glare_n / fft_lines, 3, 1});
+    c.barrier();
+    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, 3, 1});
+    c.barrier();
+    c.dispatch(billboard_kernel_, {work_, billboard_}, BillboardPush{.first_key = key}, {glare_n / 64, glare_n, 1});
 }
 
 // The kernel is a function of the pupil diameter alone, and a continuous one: no history, so nothing can flicker or differ between two runs.
 // Both pupils move together (consensual reflex): their mean.
-GlareModel::KernelChoice GlareModel::choose_kernel(const StageIo& io) const {
+GlareModel::KernelChoice GlareModel::choose_kernel(const StageIo& io) {
     if (setup_.rebuild_mm <= 0) return {};
     double sum = 0;
     int valid = 0;
@@ -265,6 +316,8 @@ glm::dvec3 GlareModel::safe_weights(uint kernel, double pupil_mm) const {
 glm::dvec3 GlareModel::blended(uint kernel, KernelChoice choice) const {
     return glm::mix(safe_weights(kernel, diameter_mm(choice.first)), safe_weights(kernel, diameter_mm(choice.second)), static_cast<double>(choice.blend));
 }
+
+double GlareModel::scattered(uint kernel, KernelChoice choice) const { return glm::dot(glm::abs(blended(kernel, choice)), shares_[kernel]); }
 
 Result<void> GlareModel::record(StageIo& io) {
     if (!prepared_) ENTOPTIC_CHECK(prepare());
@@ -304,7 +357,7 @@ void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
     GatePush gate{};
     for (const GlareTerm& term : setup_.terms) {
         if (term.source == source_excess) gate.excess = 1;
-        if (term.source == source_scene || term.source == source_displayed) gate.scattered += static_cast<float>(glm::dot(glm::abs(blended(term.kernel, choice)), shares_[term.kernel]));
+        if (term.source == source_scene || term.source == source_displayed) gate.scattered += static_cast<float>(scattered(term.kernel, choice));
     }
     gate.views = io.views;
     gate.always = setup_.gain == vec3(1) ? 0 : 1;
@@ -339,10 +392,37 @@ void GlareModel::record_far(StageIo& io, const GlareTerm& term, KernelChoice cho
     if (add) c.barrier();
     c.dispatch_indirect(pixels_[term.source], {io.scene, io.solid_angle, node_values_, io.state, near_light_}, lattice(io, term.turn), io.gate,
                         entry(gate_pixels));
+    record_zone(io, node_values_, term.zone, 0, true);
     c.barrier();
     const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 3};
     c.dispatch_indirect(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, work_}, splat, io.gate, entry(gate_splat));
     c.barrier();
+    record_scattered(io, term, choice);
+    const Gaze gaze(io);
+    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, 0, first, second, choice.blend, term.sign,
+                            leaves(term) ? 1u : 0u, add ? 1u : 0u, window_sigma_rad(), setup_.gain, {gaze.of[0], gaze.of[1]}};
+    c.dispatch_indirect(gather_veil_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, io.gate, entry(gate_gather));
+    c.barrier();
+}
+
+// Light on the grid to scattered light: by transforms, or where few texels are lit by drawing the kernel at each. The GPU chooses: it leaves
+// either dispatch without groups.
+void GlareModel::record_scattered(StageIo& io, const GlareTerm& term, KernelChoice choice) {
+    gpu::Commands& c = io.commands;
+    const uint first = key_of(term.kernel, choice.first), second = key_of(term.kernel, choice.second);
+    BillboardPush billboard{grid_.first_row, grid_.rows, pairs(), setup_.billboard_texels, first, second, choice.blend, {}};
+    if (setup_.billboard_texels > 0) {
+        billboard.groups[0] = {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1};
+        billboard.groups[1] = {glare_n / fft_lines, 3 * pairs(), 1};
+        billboard.groups[2] = {glare_n / 64, grid_.rows, pairs()};
+        c.fill(lit_texels_, 0, 0, sizeof(uint));
+        c.barrier();
+        c.dispatch_indirect(lit_, {work_, lit_texels_}, billboard, io.gate, entry(gate_splat));
+        c.barrier();
+        c.dispatch_indirect(billboard_choice_, {lit_texels_, io.gate}, billboard, io.gate, entry(gate_billboard_choice));
+        c.barrier();
+        c.dispatch_indirect(billboards_, {lit_texels_, billboard_, work_}, billboard, io.gate, entry(gate_billboards));
+    }
     c.dispatch_indirect(rows_forward_, {work_, twiddle_.buffer}, light_rows(), io.gate, entry(gate_rows));
     c.barrier();
     FftPush convolve = light_rows();
@@ -352,11 +432,6 @@ void GlareModel::record_far(StageIo& io, const GlareTerm& term, KernelChoice cho
     c.dispatch_indirect(columns_convolve_, {work_, work_, twiddle_.buffer, spectra_}, convolve, io.gate, entry(gate_columns));
     c.barrier();
     c.dispatch_indirect(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), io.gate, entry(gate_rows));
-    c.barrier();
-    const Gaze gaze(io);
-    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, 0, first, second, choice.blend, term.sign,
-                            leaves(term) ? 1u : 0u, add ? 1u : 0u, window_sigma_rad(), setup_.gain, {gaze.of[0], gaze.of[1]}};
-    c.dispatch_indirect(gather_veil_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, io.gate, entry(gate_gather));
     c.barrier();
 }
 

@@ -55,6 +55,7 @@ struct GlareTerm {
     float sign = 1;
     bool near = true;              // with a near field; only source_scene and source_excess can have one
     uint turn = 0;                 // channel c takes the source's channel (c + turn) mod 3
+    uint zone = 0;                 // of GlareSetup::zones, each with a kernel of its own
 };
 
 // Terms of an eye in the scene, seen by a wearer in front of a panel. `photographic`: the whole scene is scattered by kernel 0. Else the wearer's
@@ -74,6 +75,9 @@ struct GlareSetup {
     float rebuild_mm = 0.2f;       // distance of the kernels' pupil diameters; 0: the pupil does not matter
     float window_sigma_deg = 0;    // Gaussian window around the gaze; 0: whole field
     vec3 gain{1};                  // energy of the whole kernel; not 1 for a kernel with a colour cast
+    uint zones = 1;                // parts of the view from left to right, blended: a term scatters the light of its zone
+    uint billboard_texels = 0;     // up to so many lit texels of the grid the kernel is drawn at each of them, else by transforms
+    bool sigmoid = false;          // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
 };
 
 class GlareModel : public Model {
@@ -92,13 +96,28 @@ protected:
     virtual glm::dvec3 weights(uint kernel, double pupil_mm) const = 0;
 
     // For kernels that are not round. prepare_far() makes buffers after setup(), record_first() fills them; both once per parameter set.
-    // record_far_kernel() writes a kernel to work(), as glare_kernel.comp does, and says true.
+    // record_far_kernel() writes a kernel to work(), as glare_kernel.comp does, and says true. `steps`: see KernelChoice.
     virtual Result<void> prepare_far() { return {}; }
     virtual void record_first(StageIo&) {}
-    virtual bool record_far_kernel(StageIo&, uint /*kernel*/, double /*pupil_mm*/) { return false; }
+    virtual bool record_far_kernel(StageIo&, uint /*kernel*/, long /*steps*/) { return false; }
     // Forward transform of whole planes of work(), from the first on.
     void record_transform(gpu::Commands& commands, uint planes);
     const gpu::Buffer& work() const { return work_; }
+
+    // The two built kernels between which the eye is: by default diameters in steps of rebuild_mm. Kernels of even and odd steps are kept.
+    struct KernelChoice {
+        long first = 0, second = 0;
+        float blend = 0;      // 0: first .. 1: second
+    };
+    virtual KernelChoice choose_kernel(const StageIo& io);
+    double diameter_mm(long steps) const { return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4; }
+    // Upper bound of the share of the light that leaves its pixel, for the gate.
+    virtual double scattered(uint kernel, KernelChoice choice) const;
+    // The near field of a term, into near_light() of the tiles in near_tiles(); `add`: to what is there.
+    virtual void record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
+    const gpu::Buffer& near_tiles() const { return near_tiles_; }
+    const gpu::Buffer& near_light() const { return near_light_; }
+    float near_from() const { return near_source() == source_excess ? -1.0f : setup_.near_from; }
     uint work_planes() const { return 3 * pairs(); }
 
     struct Wanted {
@@ -122,27 +141,22 @@ protected:
     const ModelContext context_;
 
 private:
-    // The two built kernels between which the pupil lies: diameters in steps of rebuild_mm.
-    struct KernelChoice {
-        long first = 0, second = 0;
-        float blend = 0;      // 0: first .. 1: second
-    };
-
     Result<void> prepare();
     Result<void> make_buffers();
     Result<void> make_picture_passes();
     void record_coverage(StageIo& io);
     void record_kernel(StageIo& io, uint kernel, long steps);
-    void record_node_coverage(StageIo& io, uint key);
+    void record_node_coverage(StageIo& io, uint kernel, uint key);
+    void record_zone(StageIo& io, const gpu::Buffer& nodes, uint zone, std::size_t first, bool gated);
+    void record_billboard(StageIo& io, uint key);
+    Result<void> make_billboard_buffers();
+    void record_scattered(StageIo& io, const GlareTerm& term, KernelChoice choice);
     void record_gate(StageIo& io, KernelChoice choice);
-    void record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
     void record_far(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
     void record_apply(StageIo& io, const gpu::Kernel& apply);
 
-    KernelChoice choose_kernel(const StageIo& io) const;
     glm::dvec3 safe_weights(uint kernel, double pupil_mm) const;
     glm::dvec3 blended(uint kernel, KernelChoice choice) const;
-    double diameter_mm(long steps) const { return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4; }
     bool near_field() const { return setup_.near_px >= 1 && (near_source() == source_scene || near_source() == source_excess); }
     uint near_source() const;
     bool has(uint source) const;
@@ -150,7 +164,6 @@ private:
     uint key_of(uint kernel, long steps) const { return 2 * kernel + static_cast<uint>(steps & 1); }
     uint pairs() const { return static_cast<uint>(grid_.patches.size() + 1) / 2; }
     uint nodes() const { return grid_.nodes_x * grid_.nodes_y; }
-    float near_from() const { return near_source() == source_excess ? -1.0f : setup_.near_from; }
     float window_sigma_rad() const;
     LatticePush lattice(const StageIo& io, uint turn = 0) const {
         return {io.width, io.height, grid_.nodes_x, grid_.nodes_y, grid_.step, io.tiles_x, io.tiles_y, near_field() ? 1u : 0u, turn};
@@ -168,6 +181,9 @@ private:
     gpu::Kernel gate_, tiles_, coverage_, splat_, rows_forward_, rows_inverse_, columns_transform_, columns_convolve_, columns_kernel_,
         gather_coverage_, gather_veil_, near_, kernel_kernel_, apply_, apply_drawn_;
     gpu::Kernel pixels_[4];                        // by source
+    gpu::Kernel zone_, lit_, billboard_choice_, billboard_kernel_, billboards_;
+    StaticBuffer delta_rows_;
+    gpu::Buffer lit_texels_, billboard_;
     StaticBuffer twiddle_, taps_, splat_offsets_, splat_entries_, profiles_;
     gpu::Buffer work_, coverage_rows_, spectra_, node_values_, node_exchange_, node_coverage_, near_tiles_, flags_, near_light_;
 };

@@ -39,6 +39,8 @@ void main() {
         gate.dispatch[i].y = push.groups[i].y;
         gate.dispatch[i].z = push.groups[i].z;
     }
+    gate.dispatch[gate_billboard_choice] = GateDispatch(runs ? 1u : 0u, 1u, 1u);
+    gate.dispatch[gate_billboards] = GateDispatch(0u, 1u, 1u);
     gate.ran = runs ? 1u : 0u;
     gate.reason = runs ? gate_reason_runs : brightest <= 0.0 ? gate_reason_dark : push.excess != 0 ? gate_reason_within_panel : gate_reason_uniform;
     gate.bound = runs ? 0.0 : change;

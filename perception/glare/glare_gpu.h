@@ -32,7 +32,8 @@ const uint source_drawn = 3;           // what the convolutions before have chan
 
 // Entries of Gate.dispatch.
 const uint gate_tiles = 0, gate_pixels = 1, gate_splat = 2, gate_rows = 3, gate_columns = 4, gate_gather = 5, gate_near = 6, gate_apply = 7;
-const uint gate_entries = 8;
+const uint gate_entries = 8;           // of GatePush; two more:
+const uint gate_billboard_choice = 8, gate_billboards = 9;
 
 // Why the gate ran or not (Gate.reason).
 const uint gate_reason_runs = 0, gate_reason_dark = 1, gate_reason_uniform = 2, gate_reason_within_panel = 3;
@@ -79,6 +80,28 @@ struct SplatPush {
     uint channels;                     // of the node values: 3 for light, 1 for coverage
 };
 
+struct ZonePush {
+    uint nodes_x, nodes_y, step;
+    uint first;                        // of the values that are weighed
+    uint zone, zones;
+};
+
+// Lit texels of the grid, while they are few: what a billboard is drawn at.
+const uint max_billboards = 256;
+struct LitTexel {
+    uint place;                        // grid (pair of patches), row, column
+    vec3 of[2];                        // light of both patches
+};
+
+struct BillboardPush {
+    uint first_row, rows;              // of the grid that hold light
+    uint pairs;
+    uint most;                         // lit texels for which billboards are drawn
+    uint first_key, second_key;
+    float blend;
+    GateDispatch groups[3];            // rows, columns, billboards
+};
+
 struct FftPush {
     uint first_row;                    // rows pass: first row to do
     uint rows;                         // rows that hold data; columns pass: others are zero
@@ -120,7 +143,7 @@ struct KernelPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GatePush) <= 128 && sizeof(GatherPush) <= 128 && sizeof(NearPush) <= 128, "push constants");
+static_assert(sizeof(GatePush) <= 128 && sizeof(GatherPush) <= 128 && sizeof(NearPush) <= 128 && sizeof(BillboardPush) <= 128, "push constants");
 }  // namespace entoptic::perception
 #endif
 

@@ -122,6 +122,22 @@ FN rvec2 grid_offset(rvec3 right, rvec3 up, rvec3 forward, real pitch, rvec3 dir
     return side * (sine > LIT(1e-9) ? theta / (sine * pitch) : LIT(1.0) / pitch);
 }
 
+// Zones of the view, from left to right: 0 .. zones - 1, in equal steps of horizontal angle over 90 degrees; what lies outside is of the last.
+FN real zone_place(rvec3 direction, uint zones) {
+    real angle = atan(direction.x, -direction.z) * LIT(0.6366197723675814);
+    return clamp(angle + LIT(0.5), LIT(0.0), LIT(1.0)) * real(zones - 1u);
+}
+FN real zone_share(real place, uint zone) { return max(LIT(1.0) - abs(place - real(zone)), LIT(0.0)); }
+
+// --- tone curve of the veil ---
+
+// Kakimoto 2004, eq. 7, with the numerator x^g + 1/k of Tumblin, Hodgins and Guenter 1999 (misprint, facts 3.3 trap K3): only then is the
+// ratio of the largest output to the least k^2, as the paper says. D = 640, k = 20, g = 0.465 (section 3.4). 1.6 .. 640 of 255.
+FN real tumblin_sigmoid(real x) {
+    real power = x > LIT(0.0) ? exp(LIT(0.465) * log(x)) : LIT(0.0);
+    return LIT(640.0) * (power + LIT(0.05)) / (power + LIT(20.0));
+}
+
 // Gaussian window around the gaze; sigma 0: everywhere 1.
 FN real gaze_window(rvec3 gaze, rvec3 direction, real sigma) {
     if (sigma <= LIT(0.0)) return LIT(1.0);

@@ -64,7 +64,7 @@ private:
     glm::dvec3 weights(uint kernel, double pupil_mm) const override;
     Result<void> prepare_far() override;
     void record_first(StageIo& io) override;
-    bool record_far_kernel(StageIo& io, uint kernel, double pupil_mm) override;
+    bool record_far_kernel(StageIo& io, uint kernel, long steps) override;
     RadialProfile smooth_profile() const;
     double safe(double pupil_mm) const { return safe_strength(params_, spectrum_, pupil_mm, smallest_step()); }
 
@@ -139,7 +139,8 @@ void LuidoltSpectral::record_first(StageIo& io) {
     }
 }
 
-bool LuidoltSpectral::record_far_kernel(StageIo& io, uint kernel, double pupil_mm) {
+bool LuidoltSpectral::record_far_kernel(StageIo& io, uint kernel, long steps) {
+    const double pupil_mm = diameter_mm(steps);
     gpu::Commands& c = io.commands;
     if (particles_.pairs > 0) {
         const StructurePush push{0, particles_.pairs, static_cast<float>(pupil_mm / 2)};

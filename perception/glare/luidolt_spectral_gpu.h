@@ -3,6 +3,7 @@
 #define ENTOPTIC_PERCEPTION_GLARE_LUIDOLT_SPECTRAL_GPU_H
 
 #include "perception/glare/glare_gpu.h"
+#include "shaders/shared_types.h"
 
 #ifdef __cplusplus
 namespace entoptic::perception {

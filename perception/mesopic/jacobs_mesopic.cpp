@@ -36,6 +36,7 @@ public:
         rods_ = jacobs_mesopic::rods(params);
     }
     bool is_identity() const override { return parameters_[0] == 0; }
+    bool obeys_residual_law() const override { return parameters_[1] == 0; }
 };
 
 }  // namespace

@@ -11,9 +11,10 @@
 namespace entoptic::perception::testing {
 
 // Runs frames; the time is that of the stage `effect` ("perceive.acuity") alone, by GPU timestamps. Two eyes of `geometry` look at one
-// picture, `depth` metres away (empty: unknown). Counters: `gated` is 1 when the GPU left the effect out; `least_ms` the fastest frame; `cpu_ms` the processor time of all
-// threads that the selection adds to a frame without any model (fastest of each): on a software renderer the one figure that a busy
-// machine does not change. Give the benchmark a fixed number of iterations: a gated effect takes microseconds, its frame does not.
+// picture, `depth` metres away (empty: unknown). Counters: `gated` is 1 when the GPU left the effect out; `least_ms` the fastest frame;
+// `cpu_ms` the processor time of all threads that the selection adds to a frame without any model (fastest of each): on a software renderer
+// the one figure that a busy machine does not change. Give the benchmark a fixed number of iterations: a gated effect takes microseconds, its
+// frame does not.
 inline void time_effect(benchmark::State& state, const EyeGeometry& geometry, const ImageF& picture, const Selection& selection,
                         const std::string& effect, const ImageF& depth = {}) {
     StageRunner runner({geometry, geometry}, selection), without({geometry, geometry}, only({}));

@@ -1,0 +1,35 @@
+// People whose eyes come with the program: how they differ from the default one, 30 years old with brown eyes.
+#include "app/observer_file.h"
+
+namespace entoptic::app {
+
+std::span<const BuiltInObserver> built_in_observers() {
+    static constexpr BuiltInObserver table[] = {
+        {"young", R"(description = "20 years, brown eyes"
+[settings]
+glare.age = 20              # CIE 146:2002: straylight grows with 1 + (age/62.5)^4
+pupil.age = 20              # Watson and Yellott 2012
+)"},
+        {"70-years", R"(description = "70 years, brown eyes, healthy"
+[settings]
+glare.age = 70              # CIE 146:2002: 2.6 times the straylight between the halo and 30 degrees
+pupil.age = 70              # Watson and Yellott 2012: a smaller pupil in the dark
+adaptation.speed = 0.5      # choice; Jackson, Owsley and McGwin 1999 found rod recovery slower by 8 % a decade
+)"},
+        {"early-cataract", R"(description = "65 years with an early cataract"
+[settings]
+glare.age = 65
+glare.straylight_factor = 2 # van den Berg 2007: log s up by 0.3; driving is impaired from about 1.45 log units on
+pupil.age = 65
+)"},
+        {"night-driver", R"(description = "45 years, light eyes, adapted to the dark slowly: a hard case for headlamps"
+[settings]
+glare.age = 45
+glare.pigment = 1.2         # CIE 146:2002: light blue
+pupil.age = 45
+)"},
+    };
+    return table;
+}
+
+}  // namespace entoptic::app

@@ -1,0 +1,34 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// The far kernel of one aperture on the glare grid, per sr, averaged over each texel, less the near field. Grid 0: red + i green, grid 1: blue.
+#include "perception/glare/fraunhofer_mask_gpu.h"
+#include "perception/glare/glare_gpu.h"
+#include "perception/glare/glare_math.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(scalar, binding = 0) readonly buffer Table { vec3 mask_table[]; };
+layout(scalar, binding = 1) writeonly buffer Grid { vec2 grid[]; };
+
+layout(scalar, push_constant) uniform PushBlock { MaskKernelPush push; };
+
+#include "perception/glare/fraunhofer_mask_lookup.glsl"
+
+void main() {
+    const uvec2 at = gl_GlobalInvocationID.xy;
+    const ivec2 texel = ivec2(at) - ivec2(greaterThanEqual(at, uvec2(glare_n / 2))) * int(glare_n);
+    const int far = max(abs(texel.x), abs(texel.y));
+    const int samples = far <= 4 ? 8 : far <= 16 ? 4 : 2;
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < samples; ++j)
+        for (int i = 0; i < samples; ++i) {
+            const vec2 offset = (vec2(texel) + (vec2(i, j) + 0.5) / float(samples) - 0.5) * push.pitch;
+            sum += mask_kernel(push.first_entry, offset, push.pitch / float(samples)) * (1.0 - near_share(length(offset), push.near));
+        }
+    sum *= push.strength / float(samples * samples);
+    const uint to = at.y * glare_row + at.x;
+    grid[to] = sum.rg;
+    grid[to + glare_plane] = vec2(sum.b, 0.0);
+}
