@@ -1,7 +1,7 @@
 #include "perception/acuity/local_blur.h"
 
 #include "base/noise.h"
-#include "shaders/geometry.glsl"
+#include "perception/acuity/lightness_planes.h"
 
 #include "perception/acuity/local_blur.comp.h"
 #include "perception/acuity/local_blur_plan.comp.h"
@@ -43,17 +43,6 @@ struct BlurPush {
 
 // The dispatches of local_blur_gate.glsl.
 constexpr std::size_t dispatch_at(std::size_t index) { return offsetof(Gate, dispatch) + index * sizeof(GateDispatch); }
-
-// Largest number of pixels per degree where something is visible, looked up at corners of tiles.
-double largest_ppd(const std::vector<EyeGeometry>& views) {
-    double largest = 0;
-    for (const EyeGeometry& g : views)
-        for (uint y = 0; y <= g.height; y += tile_height)
-            for (uint x = 0; x <= g.width; x += tile_width)
-                if (const glm::dvec2 px(x, y); geometry::geometry_visible(g, px))
-                    largest = std::max(largest, std::min(geometry::geometry_ppd(g, px), 1e4));
-    return largest;
-}
 
 }  // namespace
 

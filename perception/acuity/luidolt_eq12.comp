@@ -5,7 +5,10 @@
 // The blur itself, for any tile and kernel: each dark pixel gathers the lightness around it with its own kernel; pixels that are not
 // visible do not count and the weights are renormalised.
 
+#define BLUR_PARAMS LuidoltEq12Params
 #include "perception/acuity/luidolt_eq12_blur.glsl"
+
+layout(constant_id = 0) const int radius = 3;     // of the widest kernel, pixels
 
 layout(local_size_x = tile_width, local_size_y = tile_height) in;
 

@@ -1,16 +1,15 @@
-// Shared by both kernels that blur: their bindings and what they do before and after the gathering. Include after #version.
+// Shared by the kernels that blur lightness by pixel: their bindings and what they do before and after the gathering. Define BLUR_PARAMS, the
+// model's struct, first.
 #define LIST_BINDING 1
 #include "perception/acuity/luidolt_eq12_tiles.glsl"
 #include "perception/acuity/tile_of_list.glsl"
-
-layout(constant_id = 0) const int radius = 3;     // of the widest kernel, pixels
 
 layout(scalar, binding = 0) buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 2) readonly buffer Plane { float plane[]; };
 layout(scalar, binding = 3) readonly buffer Density { float density[]; };   // pixels per degree at the corners of tiles
 
 layout(scalar, push_constant) uniform Push {
-    LuidoltEq12Params params;
+    BLUR_PARAMS params;
     uint width, height, tiles_x, tiles_y, all_tiles;
 } push;
 

@@ -5,7 +5,10 @@
 // The same blur for tiles that are visible all around, for kernels of up to max_interior_radius: an invocation does a column of the
 // tile, so that a loaded row of lightness serves all the pixels above and below it (12 loads a pixel instead of 49).
 
+#define BLUR_PARAMS LuidoltEq12Params
 #include "perception/acuity/luidolt_eq12_blur.glsl"
+
+layout(constant_id = 0) const int radius = 3;     // of the widest kernel, pixels
 
 layout(local_size_x = tile_width) in;
 

@@ -20,6 +20,7 @@ layout(scalar, push_constant) uniform Push {
     uint tiles_x, tiles_y, views;
     int reach_x, reach_y;      // in tiles: how far the widest kernel reaches
     uint split;                // 1: dark tiles with their surroundings inside the picture go to their own list
+    float dark_cd_m2;          // a tile with a pixel below it is worked on
 } push;
 
 shared uint counts[list_count];
@@ -34,9 +35,9 @@ void place(uint entry, uint all) {
     for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x)
             darkest = min(darkest, tiles[(tile.view * push.tiles_y + uint(y)) * push.tiles_x + uint(x)].min_y);
-    if (darkest >= dark_tile_cd_m2) return;
+    if (darkest >= push.dark_cd_m2) return;
     append(list_lightness, entry, all);
-    if (tiles[entry].min_y >= dark_tile_cd_m2) return;
+    if (tiles[entry].min_y >= push.dark_cd_m2) return;
     append(push.split == 1u && inside[entry] == 1u ? list_interior : list_rim, entry, all);
 }
 
@@ -47,7 +48,7 @@ void main() {
     float darkest = statistics[0].min_y;
     for (uint view = 1u; view < push.views; ++view) darkest = min(darkest, statistics[view].min_y);
     const uint all = push.tiles_x * push.tiles_y * push.views;
-    const uint looked_at = darkest < dark_tile_cd_m2 ? all : 0u;
+    const uint looked_at = darkest < push.dark_cd_m2 ? all : 0u;
     for (uint t = i; t < looked_at; t += 256u) place(t, all);
     barrier();
     if (i != 0u) return;

@@ -22,16 +22,26 @@ FN real mesopic_luminance(real m, real photopic, real scotopic) {
 // m = a + b·log10 Lmes, clamped, with a = 1 - log10(5)/3 and b = 1/3 (Gao et al. 2017): 0 at 0.005, 1 at 5 cd/m².
 FN real coefficient(real mesopic) { return clamp(LIT(0.7670099985546605) + log(mesopic) * LIT(0.14476482730108395), LIT(0.0), LIT(1.0)); }
 
-// The adaptation coefficient of a field: the root of m = coefficient(mesopic_luminance(m)) by bisection, since the fixed-point iteration
-// of CIE 191 need not converge for extreme ratios of scotopic to photopic light.
+// The adaptation coefficient of a field: the root of m = coefficient(mesopic_luminance(m)), kept between two ends, since the fixed-point
+// iteration of CIE 191 need not converge for extreme ratios of scotopic to photopic light. Regula falsi by the Illinois rule.
 FN real adaptation_coefficient(real photopic, real scotopic) {
     if (coefficient(photopic) >= LIT(1.0)) return LIT(1.0);
     if (coefficient(scotopic) <= LIT(0.0)) return LIT(0.0);
     real low = LIT(0.0), high = LIT(1.0);
-    for (int i = 0; i < 26; ++i) {
-        real middle = LIT(0.5) * (low + high);
-        if (middle < coefficient(mesopic_luminance(middle, photopic, scotopic))) low = middle;
-        else high = middle;
+    real at_low = -coefficient(scotopic), at_high = LIT(1.0) - coefficient(photopic);
+    for (int i = 0; i < 12 && high - low > LIT(1e-7); ++i) {
+        real middle = (low * at_high - high * at_low) / (at_high - at_low);
+        real excess = middle - coefficient(mesopic_luminance(middle, photopic, scotopic));
+        if (abs(excess) < LIT(1e-7)) return middle;
+        if (excess < LIT(0.0)) {
+            low = middle;
+            at_low = excess;
+            at_high *= LIT(0.5);
+        } else {
+            high = middle;
+            at_high = excess;
+            at_low *= LIT(0.5);
+        }
     }
     return LIT(0.5) * (low + high);
 }

@@ -1,5 +1,5 @@
 // mes2 in double from CIE 191, with none of the shader's code: the adaptation coefficient by a search for the change of sign on a fine
-// scale and regula falsi inside it, local means by their definition.
+// scale and bisection inside it, local means by their definition.
 #include "perception/mesopic/rod_vision.h"
 
 #include <algorithm>
@@ -18,18 +18,17 @@ double excess(double m, double photopic, double scotopic) {
 
 double adaptation_coefficient(double photopic, double scotopic) {
     if (photopic >= 5) return 1;
-    double low = 0, at_low = excess(0, photopic, scotopic);
-    if (at_low >= 0) return 0;
+    double low = 0;
+    if (excess(low, photopic, scotopic) >= 0) return 0;
     for (int i = 1; i <= 64; ++i) {
-        double high = i / 64.0, at_high = excess(high, photopic, scotopic);
-        if (at_high < 0) {
-            low = high, at_low = at_high;
+        double high = i / 64.0;
+        if (excess(high, photopic, scotopic) < 0) {
+            low = high;
             continue;
         }
-        for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
-            const double m = std::clamp((low * at_high - high * at_low) / (at_high - at_low), low, high), at = excess(m, photopic, scotopic);
-            if (at < 0) low = m, at_low = at, at_high *= 0.5;   // the Illinois rule
-            else high = m, at_high = at, at_low *= 0.5;
+        for (int k = 0; k < 50; ++k) {
+            const double middle = 0.5 * (low + high);
+            (excess(middle, photopic, scotopic) < 0 ? low : high) = middle;
         }
         return high;
     }
