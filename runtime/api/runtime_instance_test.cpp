@@ -200,13 +200,13 @@ TEST(TwoCall, Extensions) {
     Client xr;
     std::uint32_t count = 0;
     ASSERT_EQ(xr.xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), XR_SUCCESS);
-    ASSERT_EQ(count, 6u);
+    ASSERT_EQ(count, 7u);
     EXPECT_EQ(xr.xrEnumerateInstanceExtensionProperties(nullptr, 0, nullptr, nullptr), XR_ERROR_VALIDATION_FAILURE);
     EXPECT_EQ(xr.xrEnumerateInstanceExtensionProperties(nullptr, 6, &count, nullptr), XR_ERROR_VALIDATION_FAILURE);
     EXPECT_EQ(xr.xrEnumerateInstanceExtensionProperties("layer", 0, &count, nullptr), XR_ERROR_API_LAYER_NOT_PRESENT);
     std::vector<XrExtensionProperties> properties(count, {XR_TYPE_EXTENSION_PROPERTIES});
     EXPECT_EQ(xr.xrEnumerateInstanceExtensionProperties(nullptr, 2, &count, properties.data()), XR_ERROR_SIZE_INSUFFICIENT);
-    EXPECT_EQ(count, 6u);
+    EXPECT_EQ(count, 7u);
     ASSERT_EQ(xr.xrEnumerateInstanceExtensionProperties(nullptr, count, &count, properties.data()), XR_SUCCESS);
     for (std::size_t i = 0; i < properties.size(); ++i) EXPECT_STREQ(properties[i].extensionName, all_extensions()[i]);
     properties[1].type = XR_TYPE_UNKNOWN;
