@@ -124,6 +124,12 @@ double larson_sigma(const CurveInput& in, double cd_m2) {
     const double missing = variance(cd_m2) - (in.own[0] > 0 ? variance(in.own[0]) : 0) - (in.own[1] > 0 ? std::pow(60 / in.own[1], 2) / 12 : 0);
     return parameter(in, 0) * std::sqrt(std::max(missing, 0.0));
 }
+// The same for each pixel, drawn with at most 8 pixels; pixels' boxes of 1/12 px² are part of the kernel.
+double krawczyk_larson_sigma(const CurveInput& in, double cd_m2) {
+    const double sigma = parameter(in, 0) * 60 / (1.86 * std::sqrt(2) * larson_cutoff_cpd(in, cd_m2)), pixel = in.own[1] > 0 ? 60 / in.own[1] : 0;
+    const double drawn = std::sqrt(std::max(sigma * sigma - pixel * pixel / 12, 0.0));
+    return pixel > 0 ? std::min(drawn, 8 * pixel) : drawn;
+}
 
 namespace {
 

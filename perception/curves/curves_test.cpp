@@ -38,7 +38,7 @@ std::vector<double> places(const CurveKind& kind) {
     const std::string_view unit = kind.x_unit;
     if (unit == "cd/m²") return logarithmic(1e-6, 1e6, 241);
     if (unit == "s") return logarithmic(1e-4, 1e3, 141);
-    if (unit == "degrees") return logarithmic(0.002, 90, 181);
+    if (unit == "degrees") return logarithmic(0.02, 60, 61);
     if (unit == "m") return logarithmic(0.1, 1e3, 161);
     std::vector<double> xs;
     for (int i = 0; i <= 100; ++i) xs.push_back(kind.x_min + (kind.x_max - kind.x_min) * i / 100);
@@ -86,6 +86,7 @@ TEST(Curves, ThreeWaysAgreeForOtherSettings) {
         {"tone.response", "display_identity", {{"adapted_to", {1e-3}}, {"dark_share", {0.1}}, {"peak", {1e5}}}},
         {"tone.response", "naka_rushton", {{"adapted_to", {1e-3}}, {"n", {0.9}}}},
         {"acuity.sigma", "larson_increment", {{"displayed", {5}}, {"ppd", {13.85}}}},
+        {"acuity.sigma", "krawczyk_larson", {{"ppd", {13.85}}}},
         {"acuity.sigma", "jacobs_bands", {{"displayed", {0.5}}, {"range", {2}}}},
         {"mesopic.cone_share", "jacobs_mesopic", {{"range", {1}}}},
         {"mesopic.cone_share", "luidolt_tint", {{"cut_cd_m2", {10}}}},
@@ -95,6 +96,7 @@ TEST(Curves, ThreeWaysAgreeForOtherSettings) {
         {"dof.disc", "dioptric_disc", {{"focus_m", {0.5}}, {"wavelength_nm", {450}}, {"deadband_dioptre", {0.15}}}},
         {"glare.psf", "closed_form", {{"pupil_mm", {6}}, {"age", {70}}, {"pigment", {0}}, {"wavelength_nm", {450}}, {"lenticular_halo", {1}}}},
         {"glare.psf", "luidolt_spectral", {{"pupil_mm", {7}}, {"wavelength_nm", {575}}, {"particles_per_mm2", {2000}}}},
+        {"glare.psf", "fraunhofer_mask", {{"blades", {6}}, {"lashes", {0}}, {"lids", {0}}}},
         {"glare.psf", "cie135", {{"age", {80}}, {"pigment", {1.2}}}},
         {"foveation.eccentricity", "exact", {{"max_deg", {104}}}},
     };
@@ -221,7 +223,7 @@ double integral(const Rows& table, std::size_t column) {
 }
 
 TEST(Curves, PointSpreadsHoldAllLight) {
-    for (const char* model : {"closed_form", "cie135", "luidolt_spectral"})
+    for (const char* model : {"closed_form", "cie135", "luidolt_spectral", "fraunhofer_mask"})
         for (const double pupil : {2.0, 7.0}) {
             const double all = integral(rows("glare.psf", model, std::string_view(model) == "cie135" ? Settings{} : Settings{{"pupil_mm", {pupil}}}, logarithmic(1e-5, 90, 6000)), 1);
             ledger(("glare.psf." + std::string(model)).c_str(), "pupil " + std::to_string(static_cast<int>(pupil)) + " mm", "integral minus 1", all - 1);

