@@ -194,6 +194,7 @@ Result<std::vector<float>> CurveRequest::on_gpu(gpu::Device& device, const Curve
 
 Result<void> CurveRequest::check(std::span<const double> xs) const {
     const CurveKind& kind = *curve_.kind;
+    if (xs.empty()) return usage_error("A curve needs at least one x.");
     for (const double x : xs)
         if (!(x >= kind.x_min && x <= kind.x_max))
             return usage_error(fmt::format("x = {:g} is out of range: {} ({}) from {:g} to {:g}.", x, kind.x_name, kind.x_unit, kind.x_min, kind.x_max));

@@ -36,12 +36,6 @@ double pupil_diameter(const CurveInput& in, double cd_m2) {
     return std::clamp(young + (age - 28.58) * slope, 1.5, 9.0);
 }
 
-// The wearer's pupil, that of the formula at 20 cd/m², and what the scene adds to it: the formula at the scene's light, within limits.
-double residual_pupil(const CurveInput& in, double cd_m2) {
-    const double panel = pupil_diameter(in, 20), change = pupil_diameter(in, cd_m2) - panel;
-    return std::clamp(panel + change, std::min(parameter(in, 1), panel), std::max(parameter(in, 2), panel));
-}
-
 // Luidolt 2020, equation 2, by the C library's expm1.
 double krawczyk_exp_linear_step(const CurveInput& in, double t_s) {
     const double from = in.own[0], to = in.own[1], tau = time_constant(to, parameter(in, 2), parameter(in, 3));

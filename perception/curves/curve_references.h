@@ -10,7 +10,6 @@ namespace entoptic::perception::curve_reference {
 using Triple = std::array<double, 3>;
 
 double pupil_diameter(const CurveInput& in, double cd_m2);
-double residual_pupil(const CurveInput& in, double cd_m2);
 double krawczyk_exp_linear_step(const CurveInput& in, double t_s);
 double krawczyk_exp_log_step(const CurveInput& in, double t_s);
 double jacobs_ramp_step(const CurveInput& in, double t_s);
