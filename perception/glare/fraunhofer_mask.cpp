@@ -119,6 +119,7 @@ GlareSetup FraunhoferMask::setup() {
     setup.zones = zones();
     setup.texel_px = params_.texel_px;
     setup.near_px = params_.near_px;
+    setup.positive = true;
     setup.billboard_texels = static_cast<uint>(std::lround(params_.billboard_texels));
     setup.sigmoid = params_.sigmoid > 0.5f;
     return setup;
