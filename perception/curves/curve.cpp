@@ -137,6 +137,7 @@ Result<bool> CurveRequest::set(std::string_view name, std::span<const double> va
         for (std::size_t i = 0; i < values.size(); ++i) ENTOPTIC_CHECK(set_parameter(name, whole ? alias.parameters[i] : name, values[i]));
         return true;
     }
+    if (contains(curve_.without, name)) return false;
     for (const Curve& other : curves())
         if (other.kind == curve_.kind && takes(other, name)) return false;
     return usage_error(fmt::format("There is no setting '{}'. {}", name, all_settings()));
@@ -193,6 +194,7 @@ Result<std::vector<float>> CurveRequest::on_gpu(gpu::Device& device, const Curve
 
 Result<void> CurveRequest::check(std::span<const double> xs) const {
     const CurveKind& kind = *curve_.kind;
+    if (xs.empty()) return usage_error("A curve needs at least one x.");
     for (const double x : xs)
         if (!(x >= kind.x_min && x <= kind.x_max))
             return usage_error(fmt::format("x = {:g} is out of range: {} ({}) from {:g} to {:g}.", x, kind.x_name, kind.x_unit, kind.x_min, kind.x_max));

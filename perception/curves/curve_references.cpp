@@ -36,12 +36,6 @@ double pupil_diameter(const CurveInput& in, double cd_m2) {
     return std::clamp(young + (age - 28.58) * slope, 1.5, 9.0);
 }
 
-// The wearer's pupil, that of the formula at 20 cd/m², and what the scene adds to it: the formula at the scene's light, within limits.
-double residual_pupil(const CurveInput& in, double cd_m2) {
-    const double panel = pupil_diameter(in, 20), change = pupil_diameter(in, cd_m2) - panel;
-    return std::clamp(panel + change, std::min(parameter(in, 1), panel), std::max(parameter(in, 2), panel));
-}
-
 // Luidolt 2020, equation 2, by the C library's expm1.
 double krawczyk_exp_linear_step(const CurveInput& in, double t_s) {
     const double from = in.own[0], to = in.own[1], tau = time_constant(to, parameter(in, 2), parameter(in, 3));
@@ -123,6 +117,12 @@ double larson_sigma(const CurveInput& in, double cd_m2) {
     const auto variance = [&](double y) { return std::pow(60 / (1.86 * std::sqrt(2) * larson_cutoff_cpd(in, y)), 2); };
     const double missing = variance(cd_m2) - (in.own[0] > 0 ? variance(in.own[0]) : 0) - (in.own[1] > 0 ? std::pow(60 / in.own[1], 2) / 12 : 0);
     return parameter(in, 0) * std::sqrt(std::max(missing, 0.0));
+}
+// The same for each pixel, drawn with at most 8 pixels; pixels' boxes of 1/12 px² are part of the kernel.
+double krawczyk_larson_sigma(const CurveInput& in, double cd_m2) {
+    const double sigma = parameter(in, 0) * 60 / (1.86 * std::sqrt(2) * larson_cutoff_cpd(in, cd_m2)), pixel = in.own[1] > 0 ? 60 / in.own[1] : 0;
+    const double drawn = std::sqrt(std::max(sigma * sigma - pixel * pixel / 12, 0.0));
+    return pixel > 0 ? std::min(drawn, 8 * pixel) : drawn;
 }
 
 namespace {

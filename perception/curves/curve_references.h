@@ -10,7 +10,6 @@ namespace entoptic::perception::curve_reference {
 using Triple = std::array<double, 3>;
 
 double pupil_diameter(const CurveInput& in, double cd_m2);
-double residual_pupil(const CurveInput& in, double cd_m2);
 double krawczyk_exp_linear_step(const CurveInput& in, double t_s);
 double krawczyk_exp_log_step(const CurveInput& in, double t_s);
 double jacobs_ramp_step(const CurveInput& in, double t_s);
@@ -22,6 +21,7 @@ double luidolt_eq12_sigma(const CurveInput& in, double cd_m2);
 double luidolt_eq12_cutoff(const CurveInput& in, double cd_m2);
 double larson_cutoff_cpd(const CurveInput& in, double cd_m2);
 double larson_sigma(const CurveInput& in, double cd_m2);
+double krawczyk_larson_sigma(const CurveInput& in, double cd_m2);
 double jacobs_bands_cutoff(const CurveInput& in, double cd_m2);
 double jacobs_bands_sigma(const CurveInput& in, double cd_m2);
 double luidolt_tint_cone_share(const CurveInput& in, double cd_m2);
@@ -38,6 +38,7 @@ double fitted_eccentricity(const CurveInput& in, double rho);
 
 std::vector<double> closed_form_scatter(const CurveInput& in, std::span<const double> degrees);
 std::vector<double> luidolt_spectral_scatter(const CurveInput& in, std::span<const double> degrees);
+std::vector<double> fraunhofer_mask_scatter(const CurveInput& in, std::span<const double> degrees);
 std::vector<double> cie135_scatter(const CurveInput& in, std::span<const double> degrees);
 
 }  // namespace entoptic::perception::curve_reference

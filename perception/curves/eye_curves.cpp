@@ -2,7 +2,6 @@
 #include "perception/curves/curve_references.h"
 #include "perception/curves/curve_settings.h"
 #include "perception/curves/curve_table.h"
-#include "perception/curves/pupil_in_scene.glsl"
 #include "perception/dof/dof_math.glsl"
 #include "perception/foveation/polar_map_math.glsl"
 #include "perception/pupil/watson_yellott_math.glsl"
@@ -10,7 +9,6 @@
 #include "perception/curves/foveation_eccentricity_exact.comp.h"
 #include "perception/curves/foveation_eccentricity_fitted.comp.h"
 #include "perception/curves/lca_defocus_thibos.comp.h"
-#include "perception/curves/pupil_diameter_residual_pupil.comp.h"
 #include "perception/curves/pupil_diameter_watson_yellott.comp.h"
 
 #include <algorithm>
@@ -21,9 +19,6 @@ namespace {
 double pupil_diameter(const CurveInput& in, double x) {
     const double one_eye = in.own[2] < 1.5 ? 0.1 : 1.0;
     return std::clamp(watson_yellott::diameter_mm(x * in.own[1] * one_eye, in.own[0]), 1.5, 9.0);
-}
-double pupil_in_scene(const CurveInput& in, double x) {
-    return residual_pupil::pupil_in_scene(in.as<ResidualPupilParams>(), {in.own[0], in.own[1], in.own[2]}, x);
 }
 double defocus(const CurveInput&, double x) { return dof::chromatic_dioptre(1e-3 * x); }
 double exact_deg(const CurveInput& in, double x) { return polar_map::exact_eccentricity_deg(x, in.own[0]); }
@@ -38,8 +33,6 @@ std::vector<Curve> pupil_curves() {
                                      {"eyes", "1", 1, 2, 2, "eyes that see the light"}}};
     static const CurveKind lca{"lca.defocus", "", "wavelength", "nm", 380, 780, "refraction relative to 580 nm", "dioptre", {}};
     return {{&diameter, "watson_yellott", pupil_diameter_watson_yellott_comp_spv, &each<pupil_diameter>, &each<curve_reference::pupil_diameter>, {}, {}},
-            {&diameter, "residual_pupil", pupil_diameter_residual_pupil_comp_spv, &each<pupil_in_scene>, &each<curve_reference::residual_pupil>,
-             {{"least_mm", {"least_mm"}}, {"most_mm", {"most_mm"}}}, {}},
             {&lca, "thibos", lca_defocus_thibos_comp_spv, &each<defocus>, &each<curve_reference::thibos_defocus>, {}, {}, nullptr, 1e-4, 1e-2}};
 }
 

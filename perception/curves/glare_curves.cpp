@@ -72,7 +72,7 @@ double not_direct(const std::vector<Wave>& waves, const WaveOptics& w, double st
 }
 
 std::vector<float> table_of(const std::vector<Wave>& waves, const WaveOptics& w, double straylight) {
-    std::vector<float> table{static_cast<float>(waves.size()), static_cast<float>(std::max(1 - not_direct(waves, w, straylight), 0.0))};
+    std::vector<float> table{static_cast<float>(waves.size()), static_cast<float>(std::max(1 - not_direct(waves, w, straylight), 0.0)), static_cast<float>(w.covered)};
     for (const Wave& wave : waves)
         for (const double v : {wave.um, wave.weight, wave.straylight}) table.push_back(static_cast<float>(v));
     return table;
@@ -81,7 +81,7 @@ std::vector<float> table_of(const std::vector<Wave>& waves, const WaveOptics& w,
 double sum_of_waves(const CurveInput& in, WaveOptics w, double deg, double straylight) {
     double sum = 0;
     w.direct = static_cast<double>(in.table[1]);
-    for (std::size_t at = 2; at < in.table.size(); at += 3) {
+    for (std::size_t at = 3; at < in.table.size(); at += 3) {
         const auto um = static_cast<double>(in.table[at]), weight = static_cast<double>(in.table[at + 1]), share = static_cast<double>(in.table[at + 2]);
         const double sine = std::sin(deg * degree);
         sum += weight * (glare_psf::direct_light(w, um, sine) + glare_psf::scattered_light(w, um, sine, deg) + share * straylight);
@@ -135,6 +135,8 @@ double cie135_psf(const CurveInput& in, double deg) { return cie135_total(in, de
 
 }  // namespace
 
+Curve mask_curve(const CurveKind& kind);
+
 std::vector<Curve> glare_curves() {
     static const CurveKind kind{"glare.psf", "glare", "angle from the source", "degrees", 0, 90, "point spread, its azimuthal mean", "1/sr",
                                 {{"pupil_mm", "mm", 1, 9, 4, "diameter of the pupil"},
@@ -146,10 +148,11 @@ std::vector<Curve> glare_curves() {
     both.insert(both.end(), pupil.begin(), pupil.end());
     for (const char* name : {"straylight_factor", "lenticular_halo", "straylight_colour"}) both.push_back({name, {name}});
     using namespace curve_reference;
-    // The references take the mean over rings by their encircled energy, which has no bright rings in the core and 1 % more beside it.
-    return {{&kind, "closed_form", glare_psf_closed_form_comp_spv, &each<closed_form_psf>, &closed_form_scatter, both, {}, &closed_form_table, 0.02},
+    // The references take the mean over rings by their encircled energy, which differs by some per cent beside the core.
+    return {{&kind, "closed_form", glare_psf_closed_form_comp_spv, &each<closed_form_psf>, &closed_form_scatter, both, {}, &closed_form_table, 0.06},
             {&kind, "cie135", glare_psf_cie135_comp_spv, &each<cie135_psf>, &cie135_scatter, person, {"pupil_mm", "wavelength_nm"}, &cie135_table},
-            {&kind, "luidolt_spectral", glare_psf_luidolt_spectral_comp_spv, &each<luidolt_psf>, &luidolt_spectral_scatter, pupil, {}, &luidolt_table, 0.02}};
+            {&kind, "luidolt_spectral", glare_psf_luidolt_spectral_comp_spv, &each<luidolt_psf>, &luidolt_spectral_scatter, pupil, {}, &luidolt_table, 0.06},
+            mask_curve(kind)};
 }
 
 }  // namespace entoptic::perception

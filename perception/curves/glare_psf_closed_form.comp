@@ -9,10 +9,8 @@
 #include "perception/curves/curve_pass.glsl"
 #include "perception/curves/glare_psf_waves.glsl"
 
-float covered_share() { return 1.0 - exp(-params.particles_per_mm2 * 0.7853981633974483e-6 * params.particle_diameter_um * params.particle_diameter_um); }
-
 float curve_value(float x) {
     const float fibres = params.lenticular_halo * lenticular_share(own.pupil_mm);
-    return sum_of_waves(WaveOptics(own.pupil_mm, params.particle_diameter_um, covered_share(), params.diffraction, fibres, 0.0), x,
+    return sum_of_waves(WaveOptics(own.pupil_mm, params.particle_diameter_um, 0.0, params.diffraction, fibres, 0.0), x,
                         straylight(x, params.age, params.pigment, params.straylight_factor));
 }

@@ -9,8 +9,6 @@
 #include "perception/curves/curve_pass.glsl"
 #include "perception/curves/glare_psf_waves.glsl"
 
-float covered_share() { return 1.0 - exp(-params.particles_per_mm2 * 0.7853981633974483e-6 * params.particle_diameter_um * params.particle_diameter_um); }
-
 float curve_value(float x) {
-    return sum_of_waves(WaveOptics(own.pupil_mm, params.particle_diameter_um, covered_share(), params.diffraction, 0.0, 0.0), x, 0.0);
+    return sum_of_waves(WaveOptics(own.pupil_mm, params.particle_diameter_um, 0.0, params.diffraction, 0.0, 0.0), x, 0.0);
 }

@@ -2,10 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
+#include "perception/acuity/krawczyk_larson_math.glsl"
 #include "perception/curves/curve_settings.h"
-#include "perception/curves/pupil_in_scene.glsl"
-#define CurveSettings PupilDiameter
-#define CurveParams ResidualPupilParams
+#define CurveSettings NoSettings
 #include "perception/curves/curve_pass.glsl"
 
-float curve_value(float x) { return pupil_in_scene(params, own, x); }
+float curve_value(float x) { return resolved_cpd(x); }
