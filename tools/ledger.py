@@ -7,6 +7,8 @@ after them). This tool runs them and compares.
   tools/ledger.py --device NAME PROGRAM...            fails when a number got worse by more than a tenth
   tools/ledger.py --device NAME --update PROGRAM...   also writes better and new numbers into the ledger (worse ones too with --accept-worse)
   tools/ledger.py --device-program PATH ...           a program that prints the device's name, instead of --device
+  tools/ledger.py --log FOLDER ...                    build folder whose ctest run, in progress or the last, has run programs already:
+                                                      their lines are taken from there
 
 Less is better, but for metrics whose name begins with `psnr` or ends in `_db`. Numbers for a device without rows are listed only."""
 import argparse
@@ -95,6 +97,24 @@ def run(program):
     return output
 
 
+def logged(folder):
+    """{test name: output} of the tests that ctest has passed in this build folder: of the run in progress, else of the last."""
+    for name in ("LastTest.log.tmp", "LastTest.log"):
+        path = os.path.join(folder, "Testing", "Temporary", name)
+        if os.path.exists(path):
+            with open(path, encoding="utf-8", errors="replace") as file:
+                text = file.read()
+            break
+    else:
+        return {}
+    outputs = {}
+    for section in re.split(r"^\d+/\d+ Testing: ", text, flags=re.MULTILINE)[1:]:
+        test, _, output = section.partition("\n")
+        if "Test Passed." in output:
+            outputs[test.strip()] = output
+    return outputs
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device")
@@ -102,6 +122,7 @@ def main():
     parser.add_argument("--ledger", default=LEDGER)
     parser.add_argument("--update", action="store_true")
     parser.add_argument("--accept-worse", action="store_true")
+    parser.add_argument("--log", metavar="FOLDER")
     parser.add_argument("programs", nargs="*")
     arguments = parser.parse_args()
 
@@ -111,8 +132,10 @@ def main():
     rows = read_ledger(arguments.ledger)
     commit = commit_name()
     worse, better, new, same, seen = [], [], [], 0, set()
+    known = logged(arguments.log) if arguments.log else {}
     for program in arguments.programs:
-        for effect, setting, metric, value in measurements(run(program)):
+        output = known.get(os.path.basename(program)) or run(program)
+        for effect, setting, metric, value in measurements(output):
             key = (effect, setting, metric, device)
             if key in seen:
                 raise SystemExit(f"{program}: {','.join(key)} was measured twice")

@@ -46,7 +46,7 @@ struct AdaptationLaws {
             const double whole = reference(before, y, 1);
             for (int fps : {45, 90, 144, 1000}) {
                 const double error = relative_error(after(before, y, 1, fps), whole);
-                ledger(("adaptation." + model).c_str(), std::to_string(fps) + " fps for 1 s", "float against reference rel", error);
+                ledger(("adaptation." + model).c_str(), std::to_string(fps) + " fps for 1 s" + (y < 1 ? " into the dark" : " into light"), "float against reference rel", error);
                 EXPECT_LT(error, tolerance) << fps << " from " << before;
             }
         }

@@ -41,7 +41,7 @@ constexpr ParameterInfo parameters[] = {
     {"lid_steps", "1", 2, 64, 16, "choice: 0.6 mm of opening", "openings of the lids at which kernels are built"},
     {"texel_px", "px", 1, 16, 4, "facts 3.4.2", "least width of a texel of the grid on which far light is computed"},
     {"near_px", "px", 0, 12, 12, "choice: streaks are a pixel wide only in the near field", "radius of the near field, done at full resolution"},
-    {"billboard_texels", "1", 0, 256, 40, "measured crossover, see fraunhofer_mask.md", "up to so many lit texels the kernel is drawn at each; 0: always by transforms"},
+    {"billboard_texels", "1", 0, 256, 40, "choice: about 50 sources cost one transform", "up to so many lit texels the kernel is drawn at each; 0: always by transforms"},
     {"sigmoid", "bool", 0, 1, 0, "Kakimoto 2004, eq. 7; trap K3", "1: the veil is laid over the picture through the paper's tone curve"},
     {"photographic", "bool", 0, 1, 0, "facts 0: the residual law", "1: all light of the scene is diffracted; 0: only what the panel cannot show"},
 };
@@ -119,6 +119,7 @@ GlareSetup FraunhoferMask::setup() {
     setup.zones = zones();
     setup.texel_px = params_.texel_px;
     setup.near_px = params_.near_px;
+    setup.positive = true;
     setup.billboard_texels = static_cast<uint>(std::lround(params_.billboard_texels));
     setup.sigmoid = params_.sigmoid > 0.5f;
     return setup;

@@ -259,7 +259,7 @@ void GlareModel::record_node_coverage(StageIo& io, uint kernel, uint key) {
     c.barrier();
     c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1});
     c.barrier();
-    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, key, key, key, 0, 1, 1, 0, 0, vec3(1), {}};
+    const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, key, key, key, 0, 1, 1, 0, 0, 0, vec3(1), {}};
     c.dispatch(gather_coverage_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, {gpu::groups_for(nodes(), 256), 1, io.views});
     for (const GlareTerm& term : setup_.terms)
         if (term.kernel == kernel && leaves(term)) {
@@ -338,6 +338,7 @@ Result<void> GlareModel::record(StageIo& io) {
             record_near(io, term, choice, near_before);
             near_before = true;
         }
+    if (near_before) io.commands.barrier();
     for (const GlareTerm& term : setup_.terms)
         if (term.source != source_drawn) {
             record_far(io, term, choice, before);
@@ -400,7 +401,7 @@ void GlareModel::record_far(StageIo& io, const GlareTerm& term, KernelChoice cho
     record_scattered(io, term, choice);
     const Gaze gaze(io);
     const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, 0, first, second, choice.blend, term.sign,
-                            leaves(term) ? 1u : 0u, add ? 1u : 0u, window_sigma_rad(), setup_.gain, {gaze.of[0], gaze.of[1]}};
+                            leaves(term) ? 1u : 0u, add ? 1u : 0u, setup_.positive ? 1u : 0u, window_sigma_rad(), setup_.gain, {gaze.of[0], gaze.of[1]}};
     c.dispatch_indirect(gather_veil_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, io.gate, entry(gate_gather));
     c.barrier();
 }

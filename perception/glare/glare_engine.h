@@ -77,6 +77,7 @@ struct GlareSetup {
     vec3 gain{1};                  // energy of the whole kernel; not 1 for a kernel with a colour cast
     uint zones = 1;                // parts of the view from left to right, blended: a term scatters the light of its zone
     uint billboard_texels = 0;     // up to so many lit texels of the grid the kernel is drawn at each of them, else by transforms
+    bool positive = false;         // what arrives is cut off at 0: for kernels with streaks, which the grid sharpens; not for signed ones
     bool sigmoid = false;          // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
 };
 

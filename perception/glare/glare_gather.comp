@@ -50,8 +50,8 @@ void main() {
         coverage[push.key * all + node] = sum;
         return;
     }
-    // Light is never negative; the sharpened kernel is, a little, beside a streak.
-    sum = max(sum, vec3(0.0));
+    // Light is never negative; a sharpened kernel is, a little, beside a streak.
+    if (push.positive != 0) sum = max(sum, vec3(0.0));
     vec3 leaves = vec3(0.0);
     if (push.leaves != 0) leaves = mix(coverage[push.first_key * all + node], coverage[push.second_key * all + node], push.blend) + (1.0 - push.gain);
     const vec2 px = (vec2(i % push.nodes_x, i / push.nodes_x) - 1.0) * float(push.step) + 0.5;

@@ -119,6 +119,7 @@ struct GatherPush {
     float sign;                        // of what arrives and leaves
     uint leaves;                       // 1: what is scattered leaves its place
     uint add;                          // 1: adds to what convolutions before have left
+    uint positive;                     // 1: the kernel is light everywhere; what its samples make negative is cut off
     float window_sigma;                // rad
     vec3 gain;
     vec3 gaze[2];                      // of the views

@@ -29,21 +29,22 @@ FN real adaptation_coefficient(real photopic, real scotopic) {
     if (coefficient(scotopic) <= LIT(0.0)) return LIT(0.0);
     real low = LIT(0.0), high = LIT(1.0);
     real at_low = -coefficient(scotopic), at_high = LIT(1.0) - coefficient(photopic);
-    for (int i = 0; i < 12 && high - low > LIT(1e-7); ++i) {
-        real middle = (low * at_high - high * at_low) / (at_high - at_low);
-        real excess = middle - coefficient(mesopic_luminance(middle, photopic, scotopic));
-        if (abs(excess) < LIT(1e-7)) return middle;
+    real m = low;
+    for (int i = 0; i < 30; ++i) {
+        m = (low * at_high - high * at_low) / (at_high - at_low);
+        real excess = m - coefficient(mesopic_luminance(m, photopic, scotopic));
+        if (abs(excess) < LIT(2e-7)) break;
         if (excess < LIT(0.0)) {
-            low = middle;
+            low = m;
             at_low = excess;
             at_high *= LIT(0.5);
         } else {
-            high = middle;
+            high = m;
             at_high = excess;
             at_low *= LIT(0.5);
         }
     }
-    return LIT(0.5) * (low + high);
+    return m;
 }
 
 // Cones' share of an eye adapted to luminance y (cd/m²).

@@ -53,8 +53,8 @@ inline PFN_xrGetInstanceProcAddr negotiated(RuntimeHostFactory factory = &FakeHo
 inline const std::vector<const char*>& all_extensions() {
     static const std::vector<const char*> names{"XR_KHR_vulkan_enable",         "XR_KHR_vulkan_enable2",
                                                 "XR_EXT_debug_utils",           "XR_EXT_eye_gaze_interaction",
-                                                "XR_KHR_convert_timespec_time", "XR_ENTOPTICX_scene_luminance",
-                                                "XR_KHR_composition_layer_depth"};
+                                                "XR_KHR_composition_layer_depth", "XR_KHR_convert_timespec_time",
+                                                "XR_ENTOPTICX_scene_luminance"};
     return names;
 }
 
