@@ -130,10 +130,8 @@ void print_table(const CurveRequest& request, const Rows& rows) {
 
 CurvePicture picture_of(const CurveRequest& request, const Rows& rows, bool log_x) {
     const CurveKind& kind = *request.curve().kind;
-    const std::string settings = settings_text(request);
-    CurvePicture picture{fmt::format("{}, {}{}{}", kind.name, request.curve().model, settings.empty() ? "" : ": ", settings),
-                         fmt::format("{}, {}", kind.x_name, kind.x_unit), fmt::format("{}, {}", kind.y_name, kind.y_unit), log_x, request.columns(), rows};
-    return picture;
+    return {fmt::format("{}, {}", kind.name, request.curve().model), settings_text(request), fmt::format("{}, {}", kind.x_name, kind.x_unit),
+            fmt::format("{}, {}", kind.y_name, kind.y_unit), log_x, request.columns(), rows};
 }
 
 Result<int> curve(const Options& o) {

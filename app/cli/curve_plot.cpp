@@ -103,7 +103,9 @@ Result<void> write_curve_plot(const std::string& path, const CurvePicture& p) {
     const Axis x = axis_over(xs, p.log_x, left, right), y = axis_over(ys, spans_decades(ys), bottom, top);
     std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' width='800' height='500' font-family='sans-serif' font-size='12'>\n"
                       "<rect width='800' height='500' fill='white'/>\n";
-    svg += fmt::format("<text x='{}' y='26' font-size='14'>{}</text>\n", left, escaped(p.title)) + grid(x, y);
+    svg += fmt::format("<text x='{0}' y='22' font-size='14'>{1}</text>\n<text x='{0}' y='38' font-size='9' fill='#555'>{2}</text>\n", left, escaped(p.title),
+                       escaped(p.subtitle)) +
+           grid(x, y);
     for (std::size_t column = 1; column < p.columns.size(); ++column) svg += line(p, column, x, y);
     svg += fmt::format("<text x='{}' y='480' text-anchor='middle'>{}</text>\n", (left + right) / 2, escaped(p.x_label));
     svg += fmt::format("<text transform='translate(24 {}) rotate(-90)' text-anchor='middle'>{}</text>\n</svg>\n", (top + bottom) / 2, escaped(p.y_label));

@@ -9,7 +9,7 @@
 namespace entoptic::app {
 
 struct CurvePicture {
-    std::string title, x_label, y_label;
+    std::string title, subtitle, x_label, y_label;
     bool log_x = false;
     std::vector<std::string> columns;         // the first is x
     std::vector<std::vector<double>> rows;    // as many values as there are columns; what is not finite is left out

@@ -56,10 +56,14 @@ std::vector<Curve> acuity_curves() {
             {&cutoff, "krawczyk_larson", acuity_cutoff_krawczyk_larson_comp_spv, &each<larson_cutoff>, &each<larson_cutoff_cpd>, {}, {}},
             {&cutoff, "jacobs_bands", acuity_cutoff_jacobs_bands_comp_spv, &each<bands_cutoff>, &each<jacobs_bands_cutoff>, range, {}},
             {&cutoff, "luidolt_eq12", acuity_cutoff_luidolt_eq12_comp_spv, &each<eq12_cutoff>, &each<luidolt_eq12_cutoff>, strength, {}},
-            {&sigma, "larson_increment", acuity_sigma_larson_increment_comp_spv, &each<increment_sigma>, &each<larson_sigma>, strength, {}, nullptr, 1e-4, 1e-2},
-            {&sigma, "krawczyk_larson", acuity_sigma_krawczyk_larson_comp_spv, &each<krawczyk_sigma>, &each<krawczyk_larson_sigma>, strength, {"displayed"}, nullptr, 1e-3, 1e-2},
-            {&sigma, "jacobs_bands", acuity_sigma_jacobs_bands_comp_spv, &each<bands_sigma>, &each<jacobs_bands_sigma>, bands, {"ppd"}, nullptr, 1e-3, 1e-2},
-            {&sigma, "luidolt_eq12", acuity_sigma_luidolt_eq12_comp_spv, &each<eq12_sigma>, &each<luidolt_eq12_sigma>, strength, {"displayed", "ppd"}, nullptr, 1e-4, 1e-2}};
+            {&sigma, "larson_increment", acuity_sigma_larson_increment_comp_spv, &each<increment_sigma>, &each<larson_sigma>,
+             strength, {}, nullptr, 1e-4, 1e-2},
+            {&sigma, "krawczyk_larson", acuity_sigma_krawczyk_larson_comp_spv, &each<krawczyk_sigma>, &each<krawczyk_larson_sigma>,
+             strength, {"displayed"}, nullptr, 1e-3, 1e-2},
+            {&sigma, "jacobs_bands", acuity_sigma_jacobs_bands_comp_spv, &each<bands_sigma>, &each<jacobs_bands_sigma>,
+             bands, {"ppd"}, nullptr, 1e-3, 1e-2},
+            {&sigma, "luidolt_eq12", acuity_sigma_luidolt_eq12_comp_spv, &each<eq12_sigma>, &each<luidolt_eq12_sigma>,
+             strength, {"displayed", "ppd"}, nullptr, 1e-4, 1e-2}};
 }
 
 }  // namespace entoptic::perception

@@ -115,7 +115,8 @@ Result<void> CurveRequest::set_parameter(std::string_view alias, std::string_vie
     if (!info) return failure(fmt::format("The model {} has lost its parameter {}. Please report it.", curve_.model, name));
     const auto number = static_cast<float>(value);
     if (!(number >= info->min && number <= info->max))
-        return usage_error(fmt::format("{}={:g} is out of range: {}.", alias, value, range_of(static_cast<double>(info->min), static_cast<double>(info->max), info->unit)));
+        return usage_error(fmt::format("{}={:g} is out of range: {}.", alias, value,
+                                       range_of(static_cast<double>(info->min), static_cast<double>(info->max), info->unit)));
     input_.parameters[at] = number;
     return {};
 }
@@ -133,7 +134,8 @@ Result<bool> CurveRequest::set(std::string_view name, std::span<const double> va
         const bool whole = name == alias.name;
         if (!whole && !contains(alias.parameters, name)) continue;
         if (values.size() != (whole ? alias.parameters.size() : 1))
-            return usage_error(fmt::format("{} takes {} number{}, with commas between them.", name, whole ? alias.parameters.size() : 1, whole && alias.parameters.size() > 1 ? "s" : ""));
+            return usage_error(fmt::format("{} takes {} number{}, with commas between them.", name,
+                                           whole ? alias.parameters.size() : 1, whole && alias.parameters.size() > 1 ? "s" : ""));
         for (std::size_t i = 0; i < values.size(); ++i) ENTOPTIC_CHECK(set_parameter(name, whole ? alias.parameters[i] : name, values[i]));
         return true;
     }

@@ -73,7 +73,8 @@ struct Optics {
         return (1 - covered) * diffraction * outside(pupil_x(pupil_mm, nm, deg)) + covered * outside(pupil_x(particle_um * 1e-3, nm, deg));
     }
     double all(double nm) const {
-        const double ring = fibres > 0 ? over_sphere(1e-3, 90, [&](double deg) { return fibres * 436.9 * 568 / nm * std::exp(-19.75 * std::pow(deg - 3 * nm / 568, 2)); }) : 0;
+        const auto fibre_ring = [&](double deg) { return fibres * 436.9 * 568 / nm * std::exp(-19.75 * std::pow(deg - 3 * nm / 568, 2)); };
+        const double ring = fibres > 0 ? over_sphere(1e-3, 90, fibre_ring) : 0;
         const double tail = (1 - covered) * diffraction * (outside(third_dark_ring) - outside(pupil_x(pupil_mm, nm, 90)));
         return tail + covered * (1 - outside(pupil_x(particle_um * 1e-3, nm, 90))) + ring;
     }

@@ -49,7 +49,8 @@ double mask_psf(const CurveInput& in, double deg) {
 Curve mask_curve(const CurveKind& kind) {
     static const std::vector<CurveAlias> parameters = [] {
         std::vector<CurveAlias> list;
-        for (const char* name : {"blades", "blade_rotation_deg", "lashes", "lash_width_mm", "lash_length_mm", "lash_curl", "lash_seed", "lids", "lid_open", "filter_directions",
+        for (const char* name : {"blades", "blade_rotation_deg", "lashes", "lash_width_mm", "lash_length_mm", "lash_curl", "lash_seed", "lids", "lid_open",
+                                 "filter_directions",
                                  "filter_spacing_mm", "filter_width_mm", "filter_rotation_deg", "wavelengths", "three_lines"})
             list.push_back({name, {name}});
         return list;

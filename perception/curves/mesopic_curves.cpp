@@ -26,10 +26,13 @@ double mes2_share(const CurveInput& in, double y) { return mes2::cone_share(in.a
 std::vector<Curve> mesopic_curves() {
     static const CurveKind kind{"mesopic.cone_share", "mesopic", "luminance (luidolt_tint: of adaptation)", "cd/m²", 0, 1e9, "cones' share", "1", {}};
     using namespace curve_reference;
-    return {{&kind, "jacobs_mesopic", mesopic_cone_share_jacobs_mesopic_comp_spv, &each<jacobs_share>, &each<jacobs_mesopic_cone_share>, {{"range", {"range"}}}, {}, nullptr, 1e-4, 1e-2},
+    return {{&kind, "jacobs_mesopic", mesopic_cone_share_jacobs_mesopic_comp_spv, &each<jacobs_share>, &each<jacobs_mesopic_cone_share>,
+             {{"range", {"range"}}}, {}, nullptr, 1e-4, 1e-2},
             {&kind, "krawczyk_tint", mesopic_cone_share_krawczyk_tint_comp_spv, &each<krawczyk_share>, &each<krawczyk_tint_cone_share>, {}, {}},
-            {&kind, "luidolt_tint", mesopic_cone_share_luidolt_tint_comp_spv, &each<luidolt_share>, &each<luidolt_tint_cone_share>, {{"strength", {"strength"}}, {"cut_cd_m2", {"cut_cd_m2"}}}, {}, nullptr, 1e-4, 1e-2},
-            {&kind, "mes2", mesopic_cone_share_mes2_comp_spv, &each<mes2_share>, &each<mes2_cone_share>, {{"sp_ratio", {"sp_ratio"}}}, {}, nullptr, 1e-4, 1e-2}};
+            {&kind, "luidolt_tint", mesopic_cone_share_luidolt_tint_comp_spv, &each<luidolt_share>, &each<luidolt_tint_cone_share>,
+             {{"strength", {"strength"}}, {"cut_cd_m2", {"cut_cd_m2"}}}, {}, nullptr, 1e-4, 1e-2},
+            {&kind, "mes2", mesopic_cone_share_mes2_comp_spv, &each<mes2_share>, &each<mes2_cone_share>,
+             {{"sp_ratio", {"sp_ratio"}}}, {}, nullptr, 1e-4, 1e-2}};
 }
 
 }  // namespace entoptic::perception

@@ -34,7 +34,8 @@ std::vector<Curve> tone_curves() {
     using namespace curve_reference;
     return {{&kind, "display_identity", tone_response_display_identity_comp_spv, &each<identity_response>, &each<display_identity_response>,
              {{"night_exponent", {"night_exponent"}}, {"day_cd_m2", {"day_cd_m2"}}, {"day_exponent", {"day_exponent"}}, {"knee", {"knee"}}}, {}},
-            {&kind, "key_reinhard", tone_response_key_reinhard_comp_spv, &each<reinhard_response>, &each<key_reinhard_response>, {{"key_scale", {"key_scale"}}, {"as_printed", {"as_printed"}}}, without_scene},
+            {&kind, "key_reinhard", tone_response_key_reinhard_comp_spv, &each<reinhard_response>, &each<key_reinhard_response>,
+             {{"key_scale", {"key_scale"}}, {"as_printed", {"as_printed"}}}, without_scene},
             {&kind, "naka_rushton", tone_response_naka_rushton_comp_spv, &each<receptor_response>, &each<naka_rushton_response>,
              {{"n", {"exponent"}}, {"plateau_scale", {"plateau_scale"}}, {"plateau", {"plateau"}}}, without_scene}};
 }
