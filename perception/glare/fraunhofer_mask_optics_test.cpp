@@ -1,13 +1,11 @@
 // labels: unit
 // The aperture and its Fraunhofer diffraction against closed forms, on the CPU.
-#include "base/image_io.h"
 #include "perception/glare/fraunhofer_mask_math.glsl"
 #include "perception/glare/fraunhofer_mask_psf.h"
 #include "perception/glare/glare_math.glsl"
 #include "perception/testing/oracles.h"
 
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 
 namespace entoptic::perception {
@@ -277,48 +275,6 @@ TEST(FraunhoferOptics, TableFollowsThePupil) {
     }
     // Share beyond a sine: 2 lambda / (pi^2 D sine).
     EXPECT_NEAR(diffracted_beyond(table, 0.005) / (2 * 0.680e-3 / (pi * pi * 4 * 0.005)), 1, 0.05);
-}
-
-// Pictures to look at: /tmp/entoptic_masks when ENTOPTIC_MASK_PICTURES is set.
-TEST(FraunhoferOptics, Pictures) {
-    const char* folder = std::getenv("ENTOPTIC_MASK_PICTURES");
-    if (!folder) GTEST_SKIP() << "set ENTOPTIC_MASK_PICTURES to a folder";
-    std::filesystem::create_directories(folder);
-    const auto show = [&](const char* what, FraunhoferMaskParams p, ApertureState state) {
-        constexpr int n = 1024;
-        const double plane = 1.25 * state.pupil_mm;
-        const ApertureRaster raster = raster_aperture(p, nullptr, state, n, plane);
-        const Psf psf = make_psf(raster);
-        Image8 mask(n, n, 1), light(512, 512, 3);
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) mask.at(x, y, 0) = static_cast<std::uint8_t>(255 * raster.amplitude.at(x, y, 0));
-        const DiffractedSpectrum spectrum = diffracted_spectrum(p);
-        for (int y = 0; y < 512; ++y)
-            for (int x = 0; x < 512; ++x) {
-                glm::dvec3 sum{0};
-                for (std::size_t i = 0; i < spectrum.lambda_um.size(); ++i) {
-                    const double scale = 0.46 / spectrum.lambda_um[i];
-                    const int u = static_cast<int>(std::lround((x - 256) * scale)) + n / 2, v = static_cast<int>(std::lround((y - 256) * scale)) + n / 2;
-                    sum += spectrum.weight[i] * (scale * scale * psf.density.at(u, v, 0));
-                }
-                for (int c = 0; c < 3; ++c)
-                    light.at(x, y, c) = static_cast<std::uint8_t>(std::clamp(255 * (0.72 + 0.12 * std::log10(std::max(sum[c], 1e-12))), 0.0, 255.0));
-            }
-        ASSERT_TRUE(write_png(std::string(folder) + "/" + what + "_mask.png", mask));
-        ASSERT_TRUE(write_png(std::string(folder) + "/" + what + "_light.png", light));
-    };
-    FraunhoferMaskParams p = bare();
-    p.lashes = 24, p.lash_width_mm = 0.08f, p.lash_length_mm = 8, p.lash_curl = 0.3f, p.lids = 1;
-    show("lashes_half", p, {4, 0.6, 0});
-    show("lashes_open", p, {6, 0.85, 0});
-    p = bare();
-    p.blades = 6, p.blade_rotation_deg = 10;
-    show("hexagon", p, {4, 1, 0});
-    p = bare();
-    p.filter_directions = 2, p.filter_spacing_mm = 0.8f, p.filter_width_mm = 0.04f, p.filter_rotation_deg = 20;
-    show("cross", p, {4, 1, 0});
-    p.filter_directions = 3;
-    show("trigonal", p, {4, 1, 0});
 }
 
 }  // namespace

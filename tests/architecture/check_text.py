@@ -8,7 +8,9 @@ import sys
 from repository import ROOT, files, report, text
 
 NOTES = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "HA" + "CK", "XX" + "X"]) + r")\b")
-MACHINE_PATH = re.compile(r"(?<![\w./$}<~-])/(home/(?!u/|user/)|Users/|work/|scratch/|mnt/)[\w.]|(?<![\w./$}<~-])/root/[\w.]")
+# Folders in which people and machines keep checkouts; `u` and `user` stand for anybody.
+HOMES = ["home/(?!u/|user/)"] + [name + "/" for name in ("Users", "work", "scratch", "mnt", "root")]
+MACHINE_PATH = re.compile(r"(?<![\w./$}<~-])/(?:" + "|".join(HOMES) + r")[\w.]")
 PAGE = re.compile(r"[\w./-]*\w\.md\b")
 # These name pages that they make or look for.
 MAKE_PAGES = ("tools/book.py", "tests/architecture/check_text.py", "tests/architecture/check_lists.py")
