@@ -1,6 +1,7 @@
 // labels: gpu frame
 // How far away each pixel of the eye image is: layers with depth images in, dioptres out.
 #include "compositor/testing/frame_harness.h"
+#include "gpu/testing/validation_guard.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
@@ -11,11 +12,7 @@ namespace {
 
 using namespace testing;
 
-class ValidationGuard : public ::testing::Environment {
-public:
-    void TearDown() override { EXPECT_EQ(test_device().validation_messages(), 0u) << "the Vulkan validation layer complained"; }
-};
-const auto* const guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
+const auto* const guard = ::testing::AddGlobalTestEnvironment(new gpu::testing::ValidationGuard(&test_device));
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int size = 64;

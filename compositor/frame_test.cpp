@@ -3,6 +3,7 @@
 #include "compositor/eye_view.h"
 #include "compositor/lens_math.glsl"
 #include "compositor/testing/frame_harness.h"
+#include "gpu/testing/validation_guard.h"
 #include "shaders/colour_math.glsl"
 
 #include <gtest/gtest.h>
@@ -13,11 +14,7 @@ namespace {
 
 using namespace testing;
 
-class ValidationGuard : public ::testing::Environment {
-public:
-    void TearDown() override { EXPECT_EQ(test_device().validation_messages(), 0u) << "the Vulkan validation layer complained"; }
-};
-const auto* const guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
+const auto* const guard = ::testing::AddGlobalTestEnvironment(new gpu::testing::ValidationGuard(&test_device));
 
 constexpr perception::DisplayRange vive_range{130, 0.04f};
 

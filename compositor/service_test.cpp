@@ -5,6 +5,7 @@
 #include "base/image_io.h"
 #include "compositor/targets/headless.h"
 #include "compositor/testing/frame_harness.h"
+#include "gpu/testing/validation_guard.h"
 
 #include <atomic>
 #include <filesystem>
@@ -16,11 +17,7 @@ namespace {
 
 using namespace testing;
 
-class ValidationGuard : public ::testing::Environment {
-public:
-    void TearDown() override { EXPECT_EQ(test_device().validation_messages(), 0u) << "the Vulkan validation layer complained"; }
-};
-const auto* const guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
+const auto* const guard = ::testing::AddGlobalTestEnvironment(new gpu::testing::ValidationGuard(&test_device));
 
 // A head that turns steadily, and eyes that look ahead.
 struct TurningHead final : PoseSource {

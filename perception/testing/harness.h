@@ -1,6 +1,7 @@
 // For tests and benches: one Vulkan device a process, and a model run on an image in a few lines. Header-only, not in the library.
 #pragma once
 
+#include "gpu/testing/validation_guard.h"
 #include "perception/gate.h"
 #include "perception/stage.h"
 
@@ -24,9 +25,9 @@ inline gpu::Device& device() {
 }
 
 // Register once a test program:  const auto* guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
-class ValidationGuard : public ::testing::Environment {
+class ValidationGuard : public gpu::testing::ValidationGuard {
 public:
-    void TearDown() override { EXPECT_EQ(device().validation_messages(), 0u) << "the Vulkan validation layer complained"; }
+    ValidationGuard() : gpu::testing::ValidationGuard(&device) {}
 };
 
 // A flat picture `width` x `height` of `hfov_deg` horizontally, square pixels on the tangent plane.
