@@ -1,14 +1,9 @@
 // labels: gpu
 #include "perception/acuity/acuity.h"
+#include "perception/acuity/acuity_laws.h"
 #include "perception/acuity/larson_increment_math.glsl"
 #include "perception/acuity/local_blur_math.glsl"
-#include "perception/testing/exposure.h"
-#include "perception/testing/harness.h"
-#include "perception/testing/oracles.h"
-#include "perception/testing/scenes.h"
-#include "shaders/geometry.glsl"
-
-#include <limits>
+#include "perception/testing/gate_sweep.h"
 
 namespace entoptic::perception {
 namespace {
@@ -18,20 +13,7 @@ const auto* guard = ::testing::AddGlobalTestEnvironment(new ValidationGuard);
 const char* const name = "acuity.larson_increment";
 
 LarsonIncrementParams defaults() { return {1, 0, 2, 0, 0.7f, 6}; }
-Selection model(const std::vector<std::string>& settings = {}) { return only({"acuity=larson_increment"}, settings); }
-
-ImageD reference(const ImageF& picture, const EyeGeometry& g, const std::vector<float>& parameters, double exposure, double dt_s = 0) {
-    ReferenceFrame frame{convert<double>(picture), g, {}, {}, dt_s, false, 1, 1};
-    frame.displayed = exposed(exposure);
-    find_model("acuity", "larson_increment")->create_reference()->apply(frame, parameters);
-    return frame.image;
-}
-
-template <class T> ImageD shown(const Image<T>& picture, double exposure) {
-    ImageD out = convert<double>(picture);
-    for (double& v : out.data) v = std::clamp(v * exposure, 0.04, 130.0);
-    return out;
-}
+const AcuityLaws laws("larson_increment");
 
 // Weights 0 .. radius of the kernel, by the shader's recurrence.
 std::vector<double> kernel(double variance) {
@@ -83,10 +65,9 @@ TEST(LarsonAcuity, IncrementIsThatOfTheTable) {
         const BothEyes eyes{row.at("scene_cd_m2"), row.at("display_cd_m2")};
         worst = std::max(worst, std::abs(std::sqrt(larson_increment::added_variance(defaults(), eyes, {0, 0, 13.85})) -
                                          row.at("sigma_add_arcmin_minus_pixel_box")));
-        worst = std::max(worst, std::abs(std::sqrt(larson_increment::added_variance(defaults(), eyes, {0, 0, 1e6})) - row.at("sigma_add_arcmin_no_pixel")));
-        if (eyes.scene >= eyes.panel) {
-            EXPECT_EQ(larson_increment::added_variance(defaults(), eyes, {0, 0, 1e6}), 0.0);
-        }
+        worst = std::max(worst, std::abs(std::sqrt(larson_increment::added_variance(defaults(), eyes, {0, 0, 1e6})) -
+                                         row.at("sigma_add_arcmin_no_pixel")));
+        if (eyes.scene >= eyes.panel) { EXPECT_EQ(larson_increment::added_variance(defaults(), eyes, {0, 0, 1e6}), 0.0); }
     }
     ledger(name, "increment", "double against oracle max arcmin", worst);
     EXPECT_LT(worst, 1e-6);
@@ -99,10 +80,9 @@ TEST(LarsonAcuity, KernelHasItsVarianceAndSumsToOne) {
         for (std::size_t n = 0; n < w.size(); ++n) {
             sum += (n > 0 ? 2 : 1) * w[n];
             variance += 2 * w[n] * static_cast<double>(n * n);
-            const double exact = std::cyl_bessel_i(static_cast<double>(n), std::min(sigma * sigma, 600.0)) * std::exp(-std::min(sigma * sigma, 600.0));
-            if (sigma < 24) {
-                EXPECT_NEAR(w[n], exact, 2e-3 * w[0]) << sigma << " " << n;
-            }
+            const double exact =
+                std::cyl_bessel_i(static_cast<double>(n), std::min(sigma * sigma, 600.0)) * std::exp(-std::min(sigma * sigma, 600.0));
+            if (sigma < 24) { EXPECT_NEAR(w[n], exact, 2e-3 * w[0]) << sigma << " " << n; }
         }
         EXPECT_NEAR(sum, 1, 1e-12);
         EXPECT_NEAR(variance / (sigma * sigma), 1, 0.01) << sigma;
@@ -136,88 +116,46 @@ TEST(LarsonAcuity, NoiseIsNormalEverywhereAndSmooth) {
     EXPECT_NEAR(squares / points, 1, 0.03);
     EXPECT_NEAR(fourth / points, 3, 0.25);
     for (double t = 0; t < 3; t += 0.01) {
-        const auto at = [](double time) { return local_blur::patch_noise(7, {3.3, 4.4}, static_cast<std::uint32_t>(time), time - std::floor(time)); };
+        const auto at = [](double time) {
+            return local_blur::patch_noise(7, {3.3, 4.4}, static_cast<std::uint32_t>(time), time - std::floor(time));
+        };
         EXPECT_LT(std::abs(at(t + 0.01) - at(t)), 0.12);
     }
 }
 
 TEST(LarsonAcuity, PictureInThePanelsRangeKeepsItsBits) {
-    const EyeGeometry g = rectilinear(240, 136, 20);
-    for (const char* setting : {"acuity.randomness=0", "acuity.randomness=0.25"})
-        for (float exposure : {1.0f, 0.3f}) {
-            StageRunner runner({g}, with_exposure(model({setting}), exposure));
-            for (double light : {1e-4, 0.01, 3.0, 40.0}) {
-                ImageF picture = textured(240, 136, light);
-                for (float& v : picture.data) v = std::min(v, 130.0f);
-                EXPECT_EQ(runner.run(picture, still_input(1)).data, picture.data) << light;
-                EXPECT_TRUE(runner.stage().effects().at(0).gated);
-            }
-        }
+    laws.panel_range_keeps_its_bits({"acuity.randomness=0", "acuity.randomness=0.25"});
 }
-
-TEST(LarsonAcuity, StrengthZeroIsBitExact) {
-    StageRunner runner({rectilinear(240, 136, 20)}, with_exposure(model({"acuity.strength=0"}), 1000));
-    const ImageF picture = textured(240, 136, 1e-3);
-    EXPECT_EQ(runner.run(picture, still_input(1)).data, picture.data);
-}
+TEST(LarsonAcuity, StrengthZeroIsBitExact) { laws.strength_zero_is_bit_exact(); }
 
 TEST(LarsonAcuity, UniformFieldIsUnchanged) {
     for (const EyeGeometry& g : {rectilinear(101, 77, 8), vive_lens(180, 200)}) {
-        StageRunner runner({g}, with_exposure(model(), 1000));
+        StageRunner runner({g}, with_exposure(laws.selection(), 1000));
         for (float y : {1e-6f, 1e-4f, 0.01f}) {
-            const ImageF picture = uniform(static_cast<int>(g.width), static_cast<int>(g.height), y, 0.3f * y, 2 * y), out = runner.run(picture, still_input(1));
+            const ImageF picture = uniform(static_cast<int>(g.width), static_cast<int>(g.height), y, 0.3f * y, 2 * y),
+                         out = runner.run(picture, still_input(1));
             double worst = 0;
             for (int j = 0; j < picture.height; ++j)
                 for (int i = 0; i < picture.width; ++i)
                     if (geometry::geometry_visible(g, {i + 0.5, j + 0.5}))
                         for (int c = 0; c < 3; ++c)
-                            worst = std::max(worst, relative_error(static_cast<double>(out.at(i, j, c)), static_cast<double>(picture.at(i, j, c))));
+                            worst = std::max(
+                                worst, relative_error(static_cast<double>(out.at(i, j, c)), static_cast<double>(picture.at(i, j, c))));
             EXPECT_LT(worst, 2e-6) << y;
         }
     }
 }
 
-struct Case {
-    std::string setting;
-    EyeGeometry geometry;
-    double light, lamp;
-    float exposure;
-    std::vector<std::string> settings;
-};
-
 TEST(LarsonAcuity, GpuAgreesWithTheReference) {
-    const std::vector<Case> cases = {
-        {"night 1e-3 brightened 1000", rectilinear(140, 100, 10), 1e-3, 0, 1000, {}},
-        {"night 1e-5 brightened 1e4", rectilinear(110, 80, 8), 1e-5, 0, 1e4f, {}},
-        {"dusk 0.05 brightened 20 lamp 1e4", rectilinear(140, 100, 10), 0.05, 1e4, 20, {}},
-        {"headset's lens 1e-3 brightened 1000", vive_lens(270, 300), 1e-3, 0, 1000, {}},
-        {"photographic 20 ppd 0.01", rectilinear(131, 91, 6.5), 0.01, 0, 60, {"acuity.photographic=1"}},
-        {"random 0.01", rectilinear(140, 100, 10), 0.01, 0, 60, {"acuity.randomness=0.25"}},
-    };
-    for (const Case& c : cases) {
-        const int width = static_cast<int>(c.geometry.width), height = static_cast<int>(c.geometry.height);
-        ImageF picture = textured(width, height, c.light, c.lamp);
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
-                if (!geometry::geometry_visible(c.geometry, {x + 0.5, y + 0.5}))
-                    for (int k = 0; k < 3; ++k) picture.at(x, y, k) = 0;
-        const Selection selection = with_exposure(model(c.settings), c.exposure);
-        StageRunner runner({c.geometry}, selection);
-        const ImageF gpu = runner.run(picture, still_input(1, 0.3));
-        const auto exposure = static_cast<double>(c.exposure);
-        const ImageD truth = reference(picture, c.geometry, selection.choices[0].parameters, exposure, 0.3);
-        const ErrorSummary error = summary(delta_e_itp(shown(gpu, exposure), shown(truth, exposure)));
-        const ErrorSummary effect = summary(delta_e_itp(shown(picture, exposure), shown(truth, exposure)));
-        ledger(name, c.setting, "float against reference p99 dE_ITP", error.p99);
-        ledger(name, c.setting, "float against reference mean dE_ITP", error.mean);
-        ledger(name, c.setting, "float against reference max dE_ITP", error.max);
-        std::printf("  (the effect itself: p99 dE_ITP %.3g, mean %.3g)\n", effect.p99, effect.mean);
-        EXPECT_GT(effect.p99, 5.0) << c.setting;
-        // 1.45 is the Gaussian stack of acuity_pareto. Widths that change within a patch of noise cost more.
-        const bool random = c.setting.starts_with("random");
-        EXPECT_LT(error.p99, random ? 12 : c.lamp > 0 ? 2.0 : 1.45) << c.setting;
-        EXPECT_LT(error.mean, random ? 1.5 : 0.2) << c.setting;
-    }
+    for (const PictureCase& c : {
+             PictureCase{"night 1e-3 brightened 1000", rectilinear(140, 100, 10), 1e-3, 0, 1000, {}},
+             PictureCase{"night 1e-5 brightened 1e4", rectilinear(110, 80, 8), 1e-5, 0, 1e4f, {}},
+             PictureCase{"dusk 0.05 brightened 20 lamp 1e4", rectilinear(140, 100, 10), 0.05, 1e4, 20, {}},
+             PictureCase{"headset's lens 1e-3 brightened 1000", vive_lens(270, 300), 1e-3, 0, 1000, {}},
+             PictureCase{"photographic 20 ppd 0.01", rectilinear(131, 91, 6.5), 0.01, 0, 60, {"acuity.photographic=1"}},
+             PictureCase{"random 0.01", rectilinear(140, 100, 10), 0.01, 0, 60, {"acuity.randomness=0.25"}},
+         })
+        laws.gpu_is_the_reference(c, AcuityLaws::stack_tolerance(c, c.setting.starts_with("random"), 5.0));
 }
 
 TEST(LarsonAcuity, EdgeIsBlurredByTheIncrement) {
@@ -228,12 +166,14 @@ TEST(LarsonAcuity, EdgeIsBlurredByTheIncrement) {
     for (int y = 0; y < 64; ++y)
         for (int x = width / 2; x < width; ++x)
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1.2e-3f;
-    StageRunner runner({rectilinear(width, 64, hfov)}, with_exposure(model(), 1000));
+    StageRunner runner({rectilinear(width, 64, hfov)}, with_exposure(laws.selection(), 1000));
     const ImageF out = runner.run(picture, still_input(1));
     const double sigma = std::sqrt(larson_increment::added_variance(defaults(), {1.1e-3, 1.1}, {0, 0, 20})) * 20 / 60;
     EXPECT_NEAR(sigma, 2.39, 0.1);
     for (int k = 0; k < 8; ++k)
-        EXPECT_NEAR((static_cast<double>(out.at(width / 2 + k, 32, 1)) - 1e-3) / 0.2e-3, 0.5 + 0.5 * std::erf((k + 0.5) / sigma / std::sqrt(2)), 0.01) << k;
+        EXPECT_NEAR((static_cast<double>(out.at(width / 2 + k, 32, 1)) - 1e-3) / 0.2e-3,
+                    0.5 + 0.5 * std::erf((k + 0.5) / sigma / std::sqrt(2)), 0.01)
+            << k;
 }
 
 TEST(LarsonAcuity, LampStaysSharpAndDoesNotBleed) {
@@ -241,14 +181,12 @@ TEST(LarsonAcuity, LampStaysSharpAndDoesNotBleed) {
     for (int y = 58; y < 61; ++y)
         for (int x = 78; x < 81; ++x)
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1e4f;
-    StageRunner runner({rectilinear(160, 120, 11.5)}, with_exposure(model(), 1e4f));
+    StageRunner runner({rectilinear(160, 120, 11.5)}, with_exposure(laws.selection(), 1e4f));
     const ImageF out = runner.run(picture, still_input(1));
     EXPECT_EQ(out.at(79, 59, 0), 1e4f);  // its surroundings have 1 cd/m² and more: sharp
     for (int y = 0; y < 120; ++y)
         for (int x = 0; x < 160; ++x)
-            if (picture.at(x, y, 0) < 1) {
-                ASSERT_NEAR(out.at(x, y, 0), 1e-4f, 1e-7f) << x << " " << y;
-            }
+            if (picture.at(x, y, 0) < 1) { ASSERT_NEAR(out.at(x, y, 0), 1e-4f, 1e-7f) << x << " " << y; }
 }
 
 TEST(LarsonAcuity, BrightHalfKeepsItsBits) {
@@ -258,7 +196,7 @@ TEST(LarsonAcuity, BrightHalfKeepsItsBits) {
     for (int y = 0; y < 64; ++y)
         for (int x = 128; x < 256; ++x)
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = std::max(day.at(x, y, c), 1.0f);
-    StageRunner runner({rectilinear(256, 64, 18)}, with_exposure(model(), 3));
+    StageRunner runner({rectilinear(256, 64, 18)}, with_exposure(laws.selection(), 3));
     const ImageF out = runner.run(picture, still_input(1));
     EXPECT_FALSE(runner.stage().effects().at(0).gated);
     for (int y = 0; y < 64; ++y)
@@ -266,75 +204,36 @@ TEST(LarsonAcuity, BrightHalfKeepsItsBits) {
     EXPECT_NE(out.at(20, 30, 0), picture.at(20, 30, 0));
     // And a second frame does not see the first one's rows.
     const ImageF next = textured(256, 64, 1e-2, 0, 7);
-    StageRunner fresh({rectilinear(256, 64, 18)}, with_exposure(model(), 3));
+    StageRunner fresh({rectilinear(256, 64, 18)}, with_exposure(laws.selection(), 3));
     EXPECT_EQ(runner.run(next, still_input(1)).data, fresh.run(next, still_input(1)).data);
 }
 
 TEST(LarsonAcuity, GateHoldsBothWays) {
-    // Brightened tenfold a field is blurred as long as its mean is below some 0.2 cd/m². Chequered, so that a blur shows.
-    const EyeGeometry g = rectilinear(96, 72, 6.9);
-    const double ppd = geometry::geometry_ppd(g, {48, 36});
-    double bound = 1e-3, above = 10;
-    while (above / bound > 1 + 1e-6) {
-        const double middle = std::sqrt(bound * above);
-        (larson_increment::added_variance(defaults(), {middle, 10 * middle}, {0, 0, ppd}) > 0 ? bound : above) = middle;
-    }
-    StageRunner runner({g}, with_exposure(model(), 10));
-    const std::vector<float> parameters = default_parameters(*find_model("acuity", "larson_increment"));
-    int ran = 0, gated = 0, near_bound = 0;
-    for (double factor : {1e-5, 0.01, 0.3, 0.6, 0.85, 0.92, 0.97, 1.03, 1.06, 1.12, 1.18, 1.5, 3.0, 30.0, 500.0}) {
-        const auto y = static_cast<float>(factor * bound);
-        ImageF picture = uniform(96, 72, y);
-        for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] *= (i / 3 + i / (3 * 96)) % 2 ? 1.05f : 0.95f;
+    // Brightened tenfold a field is blurred as long as its mean is below some 0.2 cd/m².
+    const EyeGeometry g = rectilinear(48, 36, 3.45);
+    const double ppd = geometry::geometry_ppd(g, {24, 18});
+    const double bound = largest_luminance(1e-3, 10, [&](double y) {
+        return larson_increment::added_variance(defaults(), {y, 10 * y}, {0, 0, ppd}) > 0;
+    });
+    StageRunner runner({g}, with_exposure(laws.selection(), 10));
+    GateCount count;
+    for (double factor : factors_around_bound()) {
+        const ImageF picture = chequered(48, 36, static_cast<float>(factor * bound));
         const ImageF out = runner.run(picture, still_input(1));
-        const EffectOutcome outcome = runner.stage().effects().at(0);
-        (outcome.gated ? gated : ran)++;
-        near_bound += factor > 0.8 && factor < 1.2;
-        const double change = summary(relative_errors(convert<double>(picture), reference(picture, g, parameters, 10), 1e-9)).max;
-        EXPECT_EQ(outcome.gated, change == 0) << y;
-        EXPECT_EQ(out.data == picture.data, change == 0) << y;
+        const bool is_gated = runner.stage().effects().at(0).gated;
+        count.add(is_gated, factor);
+        const double change =
+            summary(relative_errors(convert<double>(picture), laws.reference(picture, g, laws.parameters(), 10), 1e-9)).max;
+        EXPECT_EQ(is_gated, change == 0) << factor;
+        EXPECT_EQ(out.data == picture.data, change == 0) << factor;
     }
-    std::printf("gate: ran %d, gated %d, near the bound %d\n", ran, gated, near_bound);
-    EXPECT_GE(ran, 5);
-    EXPECT_GE(gated, 5);
-    EXPECT_GE(4 * near_bound, ran + gated);
+    count.expect_both_outcomes();
 }
 
-TEST(LarsonAcuity, NoiseDoesNotDependOnTheFrameRate) {
-    const EyeGeometry g = rectilinear(120, 80, 10);
-    const ImageF picture = textured(120, 80, 0.01);
-    const auto after = [&](int frames, double seconds) {
-        StageRunner runner({g}, with_exposure(model({"acuity.randomness=0.25"}), 60));
-        ImageF out;
-        for (int i = 0; i < frames; ++i) out = runner.run(picture, still_input(1, seconds / frames, false));
-        return out;
-    };
-    const ImageF once = after(1, 0.5);
-    EXPECT_LT(summary(relative_errors(after(45, 0.5), once, 1e-4)).max, 1e-3);
-    EXPECT_GT(summary(relative_errors(after(1, 0.2), once, 1e-4)).max, 0.1);
-}
-
-TEST(LarsonAcuity, MirroredStaysMirrored) {
-    StageRunner runner({rectilinear(192, 96, 14)}, with_exposure(model(), 1000));
-    const ImageF picture = textured(192, 96, 1e-3);
-    EXPECT_LT(summary(relative_errors(runner.run(mirrored(picture), still_input(1)), mirrored(runner.run(picture, still_input(1))), 1e-6)).max, 1e-3);
-}
-
+TEST(LarsonAcuity, NoiseDoesNotDependOnTheFrameRate) { laws.noise_does_not_depend_on_the_frame_rate({"acuity.randomness=0.25"}); }
+TEST(LarsonAcuity, MirroredStaysMirrored) { laws.mirrored_stays_mirrored(14, 1e-3, 1000, 1e-3); }
 TEST(LarsonAcuity, HardCasesStayFinite) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    for (const EyeGeometry& g : {rectilinear(1, 1, 100), rectilinear(1011, 27, 104), rectilinear(33, 9, 0.2), vive_lens(90, 100)})
-        for (const char* setting : {"acuity.randomness=0", "acuity.randomness=0.5", "acuity.photographic=1"}) {
-            const int width = static_cast<int>(g.width), height = static_cast<int>(g.height);
-            StageRunner runner({g}, with_exposure(model({setting}), 1e4f));
-            for (float y : {0.0f, 1e-6f, 1e8f, nan, inf}) EXPECT_TRUE(all_finite(runner.run(uniform(width, height, y), still_input(1)))) << width << " " << y;
-            ImageF picture = textured(width, height, 1e-5, 1e8);
-            picture.data[0] = nan;
-            picture.data[picture.data.size() / 2] = inf;
-            picture.data.back() = -5;
-            const ImageF out = runner.run(picture, still_input(1, nan));
-            EXPECT_TRUE(all_finite(out)) << width;
-            for (float v : out.data) ASSERT_GE(v, 0.0f);
-        }
+    laws.hard_cases_stay_finite({"acuity.randomness=0", "acuity.randomness=0.5", "acuity.photographic=1"});
 }
 
 }  // namespace

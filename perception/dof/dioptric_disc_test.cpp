@@ -37,7 +37,7 @@ ImageD reference(const ImageF& picture, const ImageF& depth, const EyeGeometry& 
     ReferenceFrame frame{convert<double>(picture), g, {}, looking(pupil).eyes[0], 0, true};
     frame.dioptre = dioptres(depth);
     find_model("dof", "dioptric_disc")->create_reference()->apply(frame, values(p));
-    return shown(frame.image, g);
+    return through_lens(frame.image, g);
 }
 double sum(const ImageF& image, int channel) {
     double total = 0;

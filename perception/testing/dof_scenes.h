@@ -46,15 +46,6 @@ inline ImageD dioptres(const ImageF& depth) {
     return out;
 }
 
-// What the lens does not show is black, as the stage leaves it.
-template <class T> Image<T> shown(Image<T> image, const EyeGeometry& g) {
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            for (int c = 0; c < image.channels; ++c)
-                if (!geometry::geometry_visible(g, {x + 0.5, y + 0.5})) image.at(x, y, c) = 0;
-    return image;
-}
-
 // dof_pixels.glsl and dof_gather.comp, without sampling. `radii(dioptre, pixel_rad)` as the model's blur_radii_px().
 template <class Radii>
 ImageD gathered_twin(const ImageF& picture, const ImageF& depth, const EyeGeometry& g, double focus, uint colours, Radii radii) {
@@ -99,7 +90,7 @@ ImageD gathered_twin(const ImageF& picture, const ImageF& depth, const EyeGeomet
             const glm::dvec3 light = dof::gathered_light(sums);
             for (int c = 0; c < 3; ++c) out.at(x, y, c) = light[c];
         }
-    return shown(out, g);
+    return through_lens(out, g);
 }
 
 }  // namespace entoptic::perception::testing

@@ -53,4 +53,12 @@ inline std::function<double(double)> exposed(double exposure, DisplayRange displ
     return [=](double y) { return std::min(exposure * y, static_cast<double>(display.white_cd_m2)); };
 }
 
+// Colours of a picture in scene light as the panel shows them at this exposure.
+template <class T> ImageD on_panel(const Image<T>& picture, double exposure, DisplayRange display = {}) {
+    ImageD out = convert<double>(picture);
+    for (double& v : out.data)
+        v = std::clamp(v * exposure, static_cast<double>(display.black_cd_m2), static_cast<double>(display.white_cd_m2));
+    return out;
+}
+
 }  // namespace entoptic::perception::testing

@@ -3,6 +3,7 @@
 
 #include "base/image.h"
 #include "shaders/eye_geometry.h"
+#include "shaders/geometry.glsl"
 
 #include <cmath>
 #include <cstdint>
@@ -63,6 +64,15 @@ inline EyeGeometry vive_lens(int width = 1440, int height = 1600) {
     g.channels[1] = {centre, {-0.220272f, -0.020256f, -0.051815f}};
     g.channels[2] = {centre, {-0.254333f, 0.030692f, -0.082884f}};
     return g;
+}
+
+// What the lens does not show is black, as the stage leaves it.
+template <class T> Image<T> through_lens(Image<T> image, const EyeGeometry& g) {
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < image.channels; ++c)
+                if (!geometry::geometry_visible(g, {x + 0.5, y + 0.5})) image.at(x, y, c) = 0;
+    return image;
 }
 
 }  // namespace entoptic::perception::testing
