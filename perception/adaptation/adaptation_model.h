@@ -9,6 +9,25 @@
 
 namespace entoptic::perception {
 
+// The parameters that the models share.
+namespace adaptation_parameters {
+inline constexpr ParameterInfo sigma_gaze_deg{
+    "sigma_gaze_deg", "deg", 0.5f, 30, 2.5f, "choice: the papers give no width", "how far around the gaze light drives adaptation"};
+inline constexpr ParameterInfo wide_share{
+    "wide_share", "1", 0, 0.3f, 0.08f, "Moon and Spencer 1945", "share of the whole field's mean; counts when retinal is 0"};
+inline constexpr ParameterInfo floor_cd_m2{
+    "floor_cd_m2", "cd/m²", 1e-6f, 100, 1e-6f, "Jacobs 2015 (100 in an office); 1e-6 is none", "the eye never adapts below this"};
+inline constexpr ParameterInfo clip_over_median{"clip_over_median", "1", 10, 1e8f, 1e4f, "choice: a sun of 7x7 pixels must not own the mean",
+                                                "brightest tile over the median tile that counts"};
+constexpr ParameterInfo retinal(float by_default) {
+    return {"retinal", "bool", 0, 1, by_default, "CIE 146:2002",
+            "1: driven by the light on the fovea, with the straylight of the whole field; 0: by the scene's"};
+}
+inline constexpr ParameterInfo speed{"speed", "1", 0.05f, 20, 1, "choice: demonstrations", "multiplies time"};
+inline constexpr ParameterInfo tau_rod_s{"tau_rod_s", "s", 0.05f, 5, 0.4f, "Luidolt 2020, equation 3", "time constant of rod vision"};
+inline constexpr ParameterInfo tau_cone_s{"tau_cone_s", "s", 0.02f, 2, 0.1f, "Luidolt 2020, equation 3", "time constant of cone vision"};
+}  // namespace adaptation_parameters
+
 // `Params` is the model's parameter struct, `gaze_of` its GazeParams. `memory_bytes` of state a view that the model keeps for itself, zeroed
 // at creation, come as binding 6.
 template <class Params> class AdaptationModel final : public Model {

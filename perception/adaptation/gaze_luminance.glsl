@@ -1,29 +1,37 @@
-// What all adaptation models share: the luminance around the gaze that drives the eye's state, and steps in time. Compiled in float and
+// What all adaptation models share: the luminance around the gaze that drives the eye's state, and its speed. Compiled in float and
 // in double.
 #ifndef ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_LUMINANCE_GLSL
 #define ENTOPTIC_PERCEPTION_ADAPTATION_GAZE_LUMINANCE_GLSL
 
 #include "perception/adaptation/gaze_weighting.h"
+#include "perception/decay.glsl"
 #include "shaders/geometry.glsl"
 #include "shaders/scene_statistics.h"
 
 ENTOPTIC_MATH_BEGIN(perception::gaze)
 #ifdef __cplusplus
 using namespace entoptic::geometry;
+using namespace decay;
 #endif
 
-const float short_step = 0.25f;     // in time constants
+FN GazeParams gaze_params(float sigma_gaze_deg, float wide_share, float floor_cd_m2, float clip_over_median, float retinal, float as_printed) {
+    GazeParams g;
+    g.sigma_gaze_deg = sigma_gaze_deg;
+    g.wide_share = wide_share;
+    g.floor_cd_m2 = floor_cd_m2;
+    g.clip_over_median = clip_over_median;
+    g.retinal = retinal;
+    g.as_printed = as_printed;
+    return g;
+}
 
-// 1 - exp(-x) for 0 <= x < short_step without cancellation: the series to x⁷ (relative error under 2e-9). fp32 needs it because
-// 1 - exp(-1e-6) is 5 % off there and 0 at 1e-8 (oracle expm1_fp32).
-FN real one_minus_exp(real x) {
-    real series = LIT(1.0) - x / LIT(7.0);
-    series = LIT(1.0) - x / LIT(6.0) * series;
-    series = LIT(1.0) - x / LIT(5.0) * series;
-    series = LIT(1.0) - x / LIT(4.0) * series;
-    series = LIT(1.0) - x / LIT(3.0) * series;
-    series = LIT(1.0) - x / LIT(2.0) * series;
-    return x * series;
+// Luidolt et al. 2020, equation 4: sensitivity of the rods, 1 in the dark, at luminance y (cd/m²).
+FN real rod_sensitivity(real y) { return LIT(0.04) / (LIT(0.04) + y); }
+
+// Equation 3: time constant of an eye that sees y (cd/m²), from those of rods and cones, s.
+FN real rods_and_cones_s(float tau_rod_s, float tau_cone_s, real y) {
+    real s = rod_sensitivity(y);
+    return s * real(tau_rod_s) + (LIT(1.0) - s) * real(tau_cone_s);
 }
 
 // Angle between unit vectors, radians; exact for small angles, where acos(dot) is not.

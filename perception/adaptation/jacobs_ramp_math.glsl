@@ -12,14 +12,7 @@ using namespace gaze;
 #endif
 
 FN GazeParams gaze_of(JacobsRampParams p) {
-    GazeParams g;
-    g.sigma_gaze_deg = p.sigma_gaze_deg;
-    g.wide_share = p.wide_share;
-    g.floor_cd_m2 = p.floor_cd_m2;
-    g.clip_over_median = p.clip_over_median;
-    g.retinal = p.retinal;
-    g.as_printed = 0.0f;
-    return g;
+    return gaze_params(p.sigma_gaze_deg, p.wide_share, p.floor_cd_m2, p.clip_over_median, p.retinal, 0.0f);
 }
 
 // Equation 3: the adaptation luminance dt_s after `before`, on its way to `target` (cd/m², both above 0), where it stops.

@@ -13,13 +13,9 @@ public:
     void apply(ReferenceFrame& frame, std::span<const float> values) override {
         const auto parameter = [&](std::size_t i) { return static_cast<double>(values[i]); };
         const double floor = parameter(2);
-        const double target = std::max(reference_target(frame, {parameter(0), parameter(1), parameter(3), parameter(4) > 0.5}), floor);
-        if (frame.snap || frame.adaptation_cd_m2 <= 0) {
-            frame.adaptation_cd_m2 = target;
-            return;
-        }
-        if (frame.eye.eyelid_open < 0.5f || !(frame.dt_s > 0)) return;
-        const double now = std::log10(frame.adaptation_cd_m2), end = std::log10(target), dt = frame.dt_s * parameter(5);
+        const auto target = target_to_approach(frame, reference_target(frame, {parameter(0), parameter(1), parameter(3), parameter(4) > 0.5}), floor);
+        if (!target) return;
+        const double now = std::log10(frame.adaptation_cd_m2), end = std::log10(*target), dt = frame.dt_s * parameter(5);
         const double next = now < end ? std::min(end, now + parameter(6) * dt) : std::max(end, now - parameter(7) * dt);
         frame.adaptation_cd_m2 = std::max(floor, std::pow(10, next));
     }

@@ -13,15 +13,11 @@ public:
     void apply(ReferenceFrame& frame, std::span<const float> values) override {
         const auto parameter = [&](std::size_t i) { return static_cast<double>(values[i]); };
         const double floor = parameter(2);
-        const double target = std::max(reference_target(frame, {parameter(0), parameter(1), parameter(3), parameter(4) > 0.5}), floor);
-        if (frame.snap || frame.adaptation_cd_m2 <= 0) {
-            frame.adaptation_cd_m2 = target;
-            return;
-        }
-        if (frame.eye.eyelid_open < 0.5f || !(frame.dt_s > 0)) return;
-        const double rod = 0.04 / (0.04 + target), tau = rod * parameter(6) + (1 - rod) * parameter(7);
+        const auto target = target_to_approach(frame, reference_target(frame, {parameter(0), parameter(1), parameter(3), parameter(4) > 0.5}), floor);
+        if (!target) return;
+        const double rod = 0.04 / (0.04 + *target), tau = rod * parameter(6) + (1 - rod) * parameter(7);
         const double share = -std::expm1(-frame.dt_s * parameter(5) / tau);
-        frame.adaptation_cd_m2 = std::max(floor, std::pow(10, (1 - share) * std::log10(frame.adaptation_cd_m2) + share * std::log10(target)));
+        frame.adaptation_cd_m2 = std::max(floor, std::pow(10, (1 - share) * std::log10(frame.adaptation_cd_m2) + share * std::log10(*target)));
     }
 };
 

@@ -12,14 +12,7 @@ using namespace gaze;
 #endif
 
 FN GazeParams gaze_of(PattanaikSlowParams p) {
-    GazeParams g;
-    g.sigma_gaze_deg = p.sigma_gaze_deg;
-    g.wide_share = p.wide_share;
-    g.floor_cd_m2 = p.floor_cd_m2;
-    g.clip_over_median = p.clip_over_median;
-    g.retinal = p.retinal;
-    g.as_printed = 0.0f;
-    return g;
+    return gaze_params(p.sigma_gaze_deg, p.wide_share, p.floor_cd_m2, p.clip_over_median, p.retinal, 0.0f);
 }
 
 // Pigment recovers with t0 (s) and is bleached by light with K (cd/m² s): du/dt = (1 - u)/t0 - u Y/K for its unbleached share u.
@@ -46,8 +39,7 @@ FN real settled_bleached(Pigment p, real y) { return y / (y + half_bleaching(p))
 
 // A share dt_s later, on its way to `settled` under y: exact for constant light.
 FN real pigment_after(Pigment p, real share, real settled, real y, real dt_s) {
-    real x = dt_s * (LIT(1.0) / p.recovery_s + y / p.bleaching);
-    return x < real(short_step) ? share + (settled - share) * one_minus_exp(x) : settled + (share - settled) * exp(-x);
+    return approached(share, settled, dt_s * (LIT(1.0) / p.recovery_s + y / p.bleaching));
 }
 
 // Equivalent background: the steady light that would leave as much pigment bleached, cd/m².
@@ -62,11 +54,8 @@ FN real with_pigment(real neural, real rod_unbleached, real cone_bleached) {
 // The neural part: Krawczyk's time constants (Luidolt et al. 2020, equations 3 and 4) on ln A, as krawczyk_exp_log.
 FN real neural_after(PattanaikSlowParams p, real before, real target, real dt_s) {
     if (!(dt_s > LIT(0.0))) return before;
-    real rods = LIT(0.04) / (LIT(0.04) + target);
-    real x = dt_s * real(p.speed) / (rods * real(p.tau_rod_s) + (LIT(1.0) - rods) * real(p.tau_cone_s));
-    real to_go = log(target / before);
-    real after = x < real(short_step) ? before * exp(to_go * one_minus_exp(x)) : target * exp(-to_go * exp(-x));
-    return max(after, real(p.floor_cd_m2));
+    real x = dt_s * real(p.speed) / rods_and_cones_s(p.tau_rod_s, p.tau_cone_s, target);
+    return max(approached_in_log(before, target, x), real(p.floor_cd_m2));
 }
 
 ENTOPTIC_MATH_END

@@ -106,4 +106,14 @@ double reference_target_as_printed(const ReferenceFrame& frame, double sigma_deg
     return sum / (static_cast<double>(frame.image.width) * frame.image.height);
 }
 
+std::optional<double> target_to_approach(ReferenceFrame& frame, double target, double floor) {
+    target = std::max(target, floor);
+    if (frame.snap || frame.adaptation_cd_m2 <= 0) {
+        frame.adaptation_cd_m2 = target;
+        return {};
+    }
+    if (frame.eye.eyelid_open < 0.5f || !(frame.dt_s > 0)) return {};
+    return target;
+}
+
 }  // namespace entoptic::perception

@@ -3,12 +3,14 @@
 #define ENTOPTIC_PERCEPTION_AFTERIMAGE_JACOBS_MATH_GLSL
 
 #include "perception/afterimage/jacobs_params.h"
+#include "perception/decay.glsl"
 #include "shaders/colour_math.glsl"
 #include "shaders/scene_statistics.h"
 
 ENTOPTIC_MATH_BEGIN(perception::jacobs)
 #ifdef __cplusplus
 using namespace entoptic::colour;
+using namespace decay;
 #endif
 
 // ---- Colour ----
@@ -116,19 +118,7 @@ FN Cell steady(JacobsParams p, Drive drive) {
     return cell;
 }
 
-const float short_step = 0.25f;        // in time constants
 const float rested_below = 1e-7f;      // 1/1000 of what can be seen; from here a state is 0, so that it can be left alone
-
-// 1 - exp(-x), x >= 0: short steps by the series to x⁷ (2e-9), since fp32 loses 1 - exp(-1e-6) to 5 %.
-FN real share_gone(real x) {
-    if (x >= real(short_step)) return LIT(1.0) - exp(-x);
-    real series = LIT(1.0) - x / LIT(7.0);
-    series = LIT(1.0) - x / LIT(6.0) * series;
-    series = LIT(1.0) - x / LIT(5.0) * series;
-    series = LIT(1.0) - x / LIT(4.0) * series;
-    series = LIT(1.0) - x / LIT(3.0) * series;
-    return x * (LIT(1.0) - x / LIT(2.0) * series);
-}
 
 FN real moved(real before, real target, real rate, real dt_s) {
     real after = before + (target - before) * share_gone(rate * dt_s);
