@@ -1,6 +1,7 @@
 // For benches: GPU time of one effect on a headset's two eyes. Header-only.
 #pragma once
 
+#include "perception/testing/exposure.h"
 #include "perception/testing/harness.h"
 #include "perception/testing/scenes.h"
 
@@ -40,6 +41,13 @@ inline void time_effect(benchmark::State& state, const EyeGeometry& geometry, co
     state.counters["cpu_ms"] = cpu - cpu_without;
     for (const EffectOutcome& outcome : runner.stage().effects())
         if ("perceive." + outcome.slot == effect) state.counters["gated"] = outcome.gated ? 1 : 0;
+}
+
+// A headset's two eyes and a picture of 10^range(0) cd/m², which the display shows at 1 cd/m² when range(1) is 1, and as it is when it is 0.
+inline void time_brightened(benchmark::State& state, const Selection& selection, const std::string& effect) {
+    const double light = std::pow(10, static_cast<double>(state.range(0)));
+    const float exposure = state.range(1) ? static_cast<float>(1 / light) : 1.0f;
+    time_effect(state, vive_lens(), textured(1440, 1600, light), with_exposure(selection, exposure), effect);
 }
 
 }  // namespace entoptic::perception::testing

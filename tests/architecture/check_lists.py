@@ -11,6 +11,7 @@ MODEL_FILES = ("{model}_params.h", "{model}_math.glsl", "{model}.cpp", "{model}_
                "{model}.md", "{slot}.h")
 DRIVER_FILES = ("{driver}_device.h", "{driver}_device.cpp", "{driver}_test.cpp", "{driver}.md")
 PARAMETER = re.compile(r'^\s*\{"(\w+)",\s*"[^"]*",\s*[-\d.]', re.MULTILINE)
+SHARED_PARAMETER = re.compile(r"\bParameterInfo (\w+)[{(]")   # of a slot's models, in a header of its folder
 
 
 def rows(path):
@@ -24,6 +25,14 @@ def rows(path):
 def read(path):
     with open(os.path.join(ROOT, path), encoding="utf-8") as file:
         return file.read()
+
+
+def parameters_of(folder, model):
+    """Names in the model's list: its own, and those of the slot's headers that it names."""
+    source = read(f"{folder}/{model}.cpp")
+    headers = "".join(read(f"{folder}/{name}") for name in sorted(os.listdir(os.path.join(ROOT, folder))) if name.endswith(".h"))
+    shared = [name for name in SHARED_PARAMETER.findall(headers) if re.search(rf"\b{name}\b", source)]
+    return PARAMETER.findall(source) + shared
 
 
 def check_models():
@@ -47,7 +56,7 @@ def check_models():
             yield f"perception/models.list: {slot} {model}: {folder}/{file} is missing"
         if f"{model}.cpp" not in missing and f"{model}.md" not in missing:
             page = read(f"{folder}/{model}.md")
-            for parameter in PARAMETER.findall(read(f"{folder}/{model}.cpp")):
+            for parameter in parameters_of(folder, model):
                 if not re.search(rf"\b{parameter}\b", page):
                     yield f"{folder}/{model}.md: parameter {parameter} is not described"
     for slot in sorted(os.listdir(os.path.join(ROOT, "perception"))):
