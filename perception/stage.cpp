@@ -156,6 +156,12 @@ bool Stage::wants_depth() const {
     });
 }
 
+Result<void> Stage::expect_size(const ImageF& image, int channels, const char* what) const {
+    if (image.width == static_cast<int>(width_) && image.height == static_cast<int>(height_) && image.channels == channels) return {};
+    return failure(fmt::format("A {} of {}x{} with {} channel(s) was expected, {}x{} with {} came.", what, width_, height_, channels, image.width,
+                               image.height, image.channels));
+}
+
 Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const ImageF> images, std::span<const ImageF> depths) {
     const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * 3 * sizeof(float);
     if (images.size() != views_) return failure(fmt::format("The stage has {} views but {} pictures came.", views_, images.size()));
@@ -165,9 +171,7 @@ Result<void> Stage::record_ingest(gpu::Commands& commands, std::span<const Image
     }
     for (std::uint32_t v = 0; v < views_; ++v) {
         const ImageF& image = images[v];
-        if (image.width != static_cast<int>(width_) || image.height != static_cast<int>(height_) || image.channels != 3)
-            return failure(fmt::format("A picture of {}x{} with 3 channels was expected, {}x{} with {} came.", width_, height_, image.width, image.height,
-                                       image.channels));
+        ENTOPTIC_CHECK(expect_size(image, 3, "picture"));
         std::memcpy(upload_.bytes().data() + v * bytes, image.data.data(), bytes);
     }
     commands.begin_stage("ingest");
@@ -187,9 +191,7 @@ Result<void> Stage::record_depth(gpu::Commands& commands, std::span<const ImageF
     }
     for (std::uint32_t v = 0; v < views_; ++v) {
         const ImageF& depth = depths[v];
-        if (depth.width != static_cast<int>(width_) || depth.height != static_cast<int>(height_) || depth.channels != 1)
-            return failure(fmt::format("A depth of {}x{} with 1 channel was expected, {}x{} with {} came.", width_, height_, depth.width, depth.height,
-                                       depth.channels));
+        ENTOPTIC_CHECK(expect_size(depth, 1, "depth"));
         std::ranges::transform(depth.data, depth_upload_.as<float>().begin() + static_cast<std::ptrdiff_t>(v * pixels), dioptre_of_metres);
     }
     commands.copy(depth_upload_, dioptre_, dioptre_.size());

@@ -111,6 +111,7 @@ private:
     Result<void> allocate(const StageOptions& options);
     Result<void> create_kernels();
     Result<void> fill_solid_angles();
+    Result<void> expect_size(const ImageF& image, int channels, const char* what) const;
     Result<void> record_depth(gpu::Commands& commands, std::span<const ImageF> depths);
     Result<Slot> make_slot(const Choice& choice);
     ObserverState fresh_state() const;
