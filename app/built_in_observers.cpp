@@ -12,14 +12,14 @@ pupil.age = 20              # Watson and Yellott 2012
 )"},
         {"70-years", R"(description = "70 years, brown eyes, healthy"
 [settings]
-glare.age = 70              # CIE 146:2002: 2.6 times the straylight between the halo and 30 degrees
+glare.age = 70              # CIE 146:2002: 1 + (age/62.5)^4 is 2.4 times that of age 30
 pupil.age = 70              # Watson and Yellott 2012: a smaller pupil in the dark
-adaptation.speed = 0.5      # choice; Jackson, Owsley and McGwin 1999 found rod recovery slower by 8 % a decade
+adaptation.speed = 0.5      # choice: rods recover more slowly with age (Jackson, Owsley and McGwin 1999); the number is ours
 )"},
         {"early-cataract", R"(description = "65 years with an early cataract"
 [settings]
 glare.age = 65
-glare.straylight_factor = 2 # van den Berg 2007: log s up by 0.3; driving is impaired from about 1.45 log units on
+glare.straylight_factor = 2 # choice: log s up by 0.3, to about 1.45 log units
 pupil.age = 65
 )"},
         {"night-driver", R"(description = "45 years, light eyes, adapted to the dark slowly: a hard case for headlamps"

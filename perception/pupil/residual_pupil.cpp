@@ -11,8 +11,8 @@ constexpr ParameterInfo parameters[] = {
     {"age", "years", 20, 83, 30, "Watson and Yellott 2012", "age of the wearer and of the eye"},
     {"least_mm", "mm", 1.5f, 9, 2, "Watson and Yellott 2012", "smallest pupil that is simulated"},
     {"most_mm", "mm", 1.5f, 9, 8, "Watson and Yellott 2012", "largest pupil that is simulated"},
-    {"constriction_mm_s", "mm/s", 0.1f, 20, 6, "Ellis 1981", "fastest constriction"},
-    {"dilation_mm_s", "mm/s", 0.1f, 20, 2, "Ellis 1981", "fastest dilation"},
+    {"constriction_mm_s", "mm/s", 0.1f, 20, 6, "choice: about the fastest after a flash", "fastest constriction"},
+    {"dilation_mm_s", "mm/s", 0.1f, 20, 2, "choice: dilation is slower", "fastest dilation"},
 };
 static_assert(sizeof(ResidualPupilParams) == sizeof(float) * std::size(parameters));
 
