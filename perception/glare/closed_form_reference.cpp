@@ -1,5 +1,4 @@
-// closed_form in double from the papers, with none of the shader's code: see glare_reference.h. Of emission_spectra it knows nothing: coloured
-// light scatters as white light does.
+// closed_form in double from the papers, with none of the shader's code: see glare_reference.h.
 #include "perception/glare/closed_form_params.h"
 #include "perception/glare/glare.h"
 #include "perception/glare/glare_reference.h"
@@ -26,17 +25,18 @@ struct Eye {
     double age, pigment, factor;
 };
 
-// An eye's kernel, per sr and of strength 1, at theta over angle_scale.
+// An eye's kernel for light of these wavelengths, per sr and of strength 1, at theta over angle_scale. How much straylight is left beside
+// particles and pupil, and its norm, are those of white light.
 class EyeKernel {
 public:
-    EyeKernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm) : p_(p), eye_(eye), pupil_mm_(pupil_mm), waves_(white_spectrum()) {
+    EyeKernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm, const std::vector<Wave>& light)
+        : p_(p), eye_(eye), pupil_mm_(pupil_mm), waves_(white_spectrum()) {
         covered_ = 1 - std::exp(-static_cast<double>(p.particles_per_mm2) * pi / 4 * std::pow(static_cast<double>(p.particle_diameter_um) * 1e-3, 2));
-        for (const Wave& w : waves_)
-            for (std::size_t c = 0; c < 3; ++c)
-                colour_[c] += w.weight[c] * (1 + static_cast<double>(p.straylight_colour) * (1 - std::min(eye.pigment / 1.2, 1.0)) * (std::pow(575 / w.nm, 4) - 1));
-        const double norm = luminance(colour_);
+        const double norm = luminance(straylight_colour(waves_));
+        colour_ = straylight_colour(light);
         for (double& c : colour_) c /= norm;
         left_ = std::max(1 - luminance(wave_optics_beyond_a_degree()) / energy([&](double t) { return Rgb{straylight(t)}; }, degree, pi)[0], 0.0);
+        waves_ = light;
     }
     Rgb operator()(double theta) const {
         Rgb value = wave_optics(theta);
@@ -45,6 +45,13 @@ public:
     }
 
 private:
+    Rgb straylight_colour(const std::vector<Wave>& light) const {
+        Rgb colour{};
+        for (const Wave& w : light)
+            for (std::size_t c = 0; c < 3; ++c)
+                colour[c] += w.weight[c] * (1 + static_cast<double>(p_.straylight_colour) * (1 - std::min(eye_.pigment / 1.2, 1.0)) * (std::pow(575 / w.nm, 4) - 1));
+        return colour;
+    }
     // CIE 146-2002 from 0.1 to 100 degrees.
     double straylight(double theta) const {
         const double deg = std::clamp(theta / degree, 0.1, 100.0), a = 1 + std::pow(eye_.age / 62.5, 4);
@@ -83,21 +90,21 @@ private:
     Rgb colour_{};
 };
 
-Kernel make_kernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm, double pixel_rad) {
-    const Kernel one{EyeKernel(p, eye, pupil_mm)};
+Kernel scaled(const ClosedFormParams& p, const Kernel& one, double times) {
     const double scale = static_cast<double>(p.angle_scale);
-    const auto scaled = [&](double theta) {
-        Rgb value = one(theta / scale);
-        for (double& v : value) v *= static_cast<double>(p.strength) / (scale * scale);
-        return value;
-    };
-    const Rgb scattered = energy(scaled, 0.5 * pixel_rad, pi);
-    const double limit = std::min(1.0, 0.9 / std::max({scattered[0], scattered[1], scattered[2]}));
     return Kernel([&](double theta) {
-        Rgb value = scaled(theta);
-        for (double& v : value) v *= limit;
+        Rgb value = one(theta / scale);
+        for (double& v : value) v *= times * static_cast<double>(p.strength) / (scale * scale);
         return value;
     });
+}
+
+// A tenth of the light at least is not scattered.
+Kernel make_kernel(const ClosedFormParams& p, const Eye& eye, double pupil_mm, double pixel_rad) {
+    const Kernel one{EyeKernel(p, eye, pupil_mm, white_spectrum())};
+    const Kernel whole = scaled(p, one, 1);
+    const Rgb scattered = energy([&](double theta) { return whole(theta); }, 0.5 * pixel_rad, pi);
+    return scaled(p, one, std::min(1.0, 0.9 / std::max({scattered[0], scattered[1], scattered[2]})));
 }
 
 class ClosedFormReference final : public ReferenceModel {
@@ -114,17 +121,22 @@ public:
         const double pixel_rad = scatter.smallest_step();
         if (!person_ || std::memcmp(&p, &kept_params_, sizeof p) != 0 || pupil_mm != kept_pupil_mm_ || pixel_rad != kept_pixel_rad_) {
             person_ = make_kernel(p, person, pupil_mm, pixel_rad);
+            primaries_.clear();
+            for (std::size_t primary = 0; primary < 3 && p.emission_spectra > 0.5f; ++primary)
+                primaries_.push_back(scaled(p, Kernel{EyeKernel(p, person, pupil_mm, primary_spectrum(primary))}, 1));
             wearer_ = differ ? make_kernel(p, wearer, pupil_mm, pixel_rad) : *person_;
             kept_params_ = p;
             kept_pupil_mm_ = pupil_mm;
             kept_pixel_rad_ = pixel_rad;
         }
-        frame.image = seen(frame.image, scatter, *person_, *wearer_, differ, frame.scene_white_cd_m2, static_cast<double>(p.rescatter), p.photographic > 0.5f);
+        frame.image = seen(frame.image, scatter, *person_, *wearer_, differ, frame.scene_white_cd_m2, static_cast<double>(p.rescatter), p.photographic > 0.5f,
+                           primaries_);
     }
 
 private:
     // The tables take a second; the last ones are kept.
     std::optional<Kernel> person_, wearer_;
+    std::vector<Kernel> primaries_;  // with emission_spectra
     ClosedFormParams kept_params_{};
     double kept_pupil_mm_ = 0, kept_pixel_rad_ = 0;
 };

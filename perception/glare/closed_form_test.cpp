@@ -230,7 +230,7 @@ TEST(ClosedForm, AnOlderPersonSeesMoreVeilOfThePanelItself) {
 
 // --- three comparisons ---
 
-struct Scene { const char* what; EyeGeometry g; ImageF image; Settings settings; };
+struct Scene { std::string what; EyeGeometry g; ImageF image; Settings settings; };
 std::vector<Scene> scenes() {
     std::vector<Scene> list;
     const EyeGeometry axis = rectilinear(64, 52, 6.7);
@@ -241,6 +241,12 @@ std::vector<Scene> scenes() {
     list.push_back({"cataract beside a normal wearer, window within the panel's white", axis, window, {"glare.straylight_factor=4", "glare.wearer_straylight_factor=1"}});
     list.push_back({"window 2e3, 100 degrees", rectilinear(64, 68, 100), room(64, 68, 2e3f, 6), {}});
     list.push_back({"photographic, 9.6 ppd", axis, room(64, 52, 1e4f), {"glare.photographic=1", "glare.near_from=0"}});
+    const struct { const char* what; float rgb[3]; } lamps[] = {{"red", {1, 0, 0}}, {"green", {0, 1, 0}}, {"blue", {0, 0, 1}}};
+    for (const auto& lamp : lamps) {
+        ImageF night = uniform(64, 52, 1);
+        fill(night, 30, 25, 3, 3, 1e4f * lamp.rgb[0], 1e4f * lamp.rgb[1], 1e4f * lamp.rgb[2]);
+        list.push_back({std::string(lamp.what) + " lamp 1e4 by its own spectrum, light eyes", axis, night, {"glare.emission_spectra=1", "glare.pigment=0.2"}});
+    }
     return list;
 }
 

@@ -1,5 +1,7 @@
 #include "perception/glare/glare_reference.h"
 
+#include "perception/glare/glare_emission.h"
+
 #include "shaders/geometry.glsl"
 
 #include <algorithm>
@@ -192,8 +194,24 @@ Rgb energy(const std::function<Rgb(double)>& per_sr, double from, double to) {
     return sum;
 }
 
+namespace {
+
+// The light of each primary, alike in all channels, through the kernel that says what a channel gets of it.
+ImageD scattered_by_primary(const ImageD& source, const Scatter& scatter, std::span<const Kernel> primaries) {
+    ImageD sum(source.width, source.height, 3);
+    for (std::size_t primary = 0; primary < 3; ++primary) {
+        ImageD light = source;
+        for (std::size_t i = 0; i < light.data.size(); ++i) light.data[i] = source.data[i - i % 3 + primary];
+        const ImageD added = scatter(light, primaries[primary], false);
+        for (std::size_t i = 0; i < sum.data.size(); ++i) sum.data[i] += added.data[i];
+    }
+    return sum;
+}
+
+}  // namespace
+
 ImageD seen(const ImageD& image, const Scatter& scatter, const Kernel& person, const Kernel& wearer, bool differ, double white, double rescatter,
-            bool photographic) {
+            bool photographic, std::span<const Kernel> primaries) {
     ImageD out = image;
     const auto add = [&](const ImageD& light, double sign) {
         for (std::size_t i = 0; i < out.data.size(); ++i) out.data[i] = std::max(out.data[i] + sign * light.data[i], 0.0);
@@ -205,7 +223,7 @@ ImageD seen(const ImageD& image, const Scatter& scatter, const Kernel& person, c
     ImageD excess = image, shown = image;
     for (double& v : excess.data) v = std::max(v - white, 0.0);
     for (double& v : shown.data) v = std::min(v, white);
-    ImageD added = scatter(excess, person, false);
+    ImageD added = primaries.empty() ? scatter(excess, person, false) : scattered_by_primary(excess, scatter, primaries);
     if (differ) {
         const ImageD by_person = scatter(shown, person, true), by_wearer = scatter(shown, wearer, true);
         for (std::size_t i = 0; i < added.data.size(); ++i) added.data[i] += by_person.data[i] - by_wearer.data[i];
@@ -241,6 +259,36 @@ std::vector<Wave> white_spectrum() {
     }
     for (Wave& wave : waves)
         for (std::size_t c = 0; c < 3; ++c) wave.weight[c] /= sum[c];
+    return waves;
+}
+
+std::vector<Wave> primary_spectrum(std::size_t primary) {
+    const auto power = [](int nm) {  // of red, green and blue, linear between the table's rows
+        const double place = (nm - emission_first_nm) / emission_step_nm;
+        const auto row = static_cast<std::size_t>(place);
+        glm::dvec3 value;
+        for (int i = 0; i < 3; ++i) value[i] = std::lerp(emission_basis[row][static_cast<std::size_t>(i)], emission_basis[row + 1][static_cast<std::size_t>(i)], place - std::floor(place));
+        return value;
+    };
+    std::vector<Wave> waves = white_spectrum();
+    // By Cramer's rule: the mixture of the three spectra that is seen as the primary.
+    glm::dmat3 seen_as(0.0);  // column: spectrum
+    for (const Wave& wave : waves) {
+        const Rgb rgb = linear_rgb(wave.nm);
+        seen_as += glm::outerProduct(glm::dvec3(rgb[0], rgb[1], rgb[2]), power(static_cast<int>(wave.nm)));
+    }
+    glm::dvec3 mixture, wanted(0.0);
+    wanted[static_cast<int>(primary)] = 1;
+    for (int i = 0; i < 3; ++i) {
+        glm::dmat3 replaced = seen_as;
+        replaced[i] = wanted;
+        mixture[i] = glm::determinant(replaced) / glm::determinant(seen_as);
+    }
+    for (Wave& wave : waves) {
+        const double light = glm::dot(mixture, power(static_cast<int>(wave.nm)));
+        const Rgb rgb = linear_rgb(wave.nm);
+        for (std::size_t c = 0; c < 3; ++c) wave.weight[c] = rgb[c] * light;
+    }
     return waves;
 }
 

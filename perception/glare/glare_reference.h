@@ -11,6 +11,7 @@
 #include <array>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace entoptic::perception::glare_reference {
@@ -63,9 +64,10 @@ Rgb energy(const std::function<Rgb(double theta)>& per_sr, double from, double t
 
 // The residual form: out = C + what the panel cannot send, scattered by the person's eye; plus the displayed light, scattered by the
 // difference of person and wearer; less `rescatter` times what the wearer's eye scatters of the light that all this adds to the panel's.
-// `photographic`: out = C + sum of K (C(y) - C(x)).
+// `photographic`: out = C + sum of K (C(y) - C(x)). With `primaries`, three kernels, what the panel cannot send of red, green and blue scatters
+// by one each instead of the person's, which says what each channel gets of it.
 ImageD seen(const ImageD& image, const Scatter& scatter, const Kernel& person, const Kernel& wearer, bool differ, double white_cd_m2, double rescatter,
-            bool photographic);
+            bool photographic, std::span<const Kernel> primaries = {});
 
 // --- optics ---
 
@@ -77,6 +79,8 @@ struct Wave {
 Rgb linear_rgb(double nm);
 // Every 4 nm from 400 to 700, each channel of sum 1.
 std::vector<Wave> white_spectrum();
+// The same wavelengths of the light of red, green or blue (0..2) of glare_emission.h, mixed so that the sum is that primary alone.
+std::vector<Wave> primary_spectrum(std::size_t primary);
 // Light per sr that an aperture (um) diffracts, mean over a ring that holds whole fringes: Rayleigh 1881, encircled energy 1 - J0^2 - J1^2.
 double aperture_ring(double aperture_um, double lambda_um, double theta, double least);
 // Light per sr, of energy 1, that a disc scatters.
