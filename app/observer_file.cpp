@@ -81,10 +81,9 @@ bool has_parameter(const perception::Selection& selection, const PersonSetting& 
     return std::any_of(list.begin(), list.end(), [&](const perception::ParameterInfo& p) { return wanted.parameter == p.name; });
 }
 
-}  // namespace
-
-Result<perception::Selection> select_effects(const std::string& preset, const std::vector<std::string>& models,
-                                             const std::vector<std::string>& settings, const std::string& observer) {
+// Without regard to doublings.
+Result<perception::Selection> select_for(const std::string& preset, const std::vector<std::string>& models, const std::vector<std::string>& settings,
+                                         const std::string& observer) {
     if (observer.empty()) return perception::select(preset, models, settings);
     ENTOPTIC_TRY(person, read_observer(observer));
     ENTOPTIC_TRY(chosen, perception::select(preset, models, {}));
@@ -96,6 +95,15 @@ Result<perception::Selection> select_effects(const std::string& preset, const st
         }
     all.insert(all.end(), settings.begin(), settings.end());
     return perception::select(preset, models, all);
+}
+
+}  // namespace
+
+Result<perception::Selection> select_effects(const std::string& preset, const std::vector<std::string>& models,
+                                             const std::vector<std::string>& settings, const std::string& observer, perception::Viewer viewer) {
+    ENTOPTIC_TRY(selection, select_for(preset, models, settings, observer));
+    ENTOPTIC_CHECK(perception::expect_no_doubling(selection, viewer));
+    return selection;
 }
 
 }  // namespace entoptic::app

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "base/result.h"
-#include "perception/preset.h"
+#include "perception/doubling.h"
 
 #include <span>
 #include <string>
@@ -23,8 +23,8 @@ struct BuiltInObserver {
 std::span<const BuiltInObserver> built_in_observers();
 
 // The effects that a preset, its overrides and a person's file choose together. What the person's file says of models that are not chosen is
-// left out; --set wins over the file. `observer` empty: the default eye.
+// left out; --set wins over the file. `observer` empty: the default eye. A choice that counts an effect twice for this viewer is an error.
 Result<perception::Selection> select_effects(const std::string& preset, const std::vector<std::string>& models,
-                                             const std::vector<std::string>& settings, const std::string& observer);
+                                             const std::vector<std::string>& settings, const std::string& observer, perception::Viewer viewer);
 
 }  // namespace entoptic::app

@@ -139,6 +139,7 @@ TEST_F(Command, RunChecksItsOptionsFirst) {
     expect_error(3, "no driver", call({"--hmd", "vive-pro"}));
     expect_error(1, "no folder", call({"--report", path("nowhere/report.json")}));
     expect_error(2, "nobody", call({"--observer", "nobody"}));
+    expect_error(2, "counts an effect twice", call({"--model", "acuity=krawczyk_larson"}));
     EXPECT_FALSE(testing::fs::exists("/tmp/entoptic_must_not_exist"));
 }
 

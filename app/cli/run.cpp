@@ -142,7 +142,8 @@ Result<void> check_against_config(const Options& o) {
     }
     models.insert(models.end(), o.models.begin(), o.models.end());
     settings.insert(settings.end(), o.settings.begin(), o.settings.end());
-    ENTOPTIC_CHECK(select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value)));
+    ENTOPTIC_CHECK(select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value),
+                                  perception::Viewer::wearer));
     return {};
 }
 

@@ -111,7 +111,7 @@ Result<void> plan_eye(const Options& o, Plan& plan) {
 }
 
 Result<Selection> plan_selection(const Options& o) {
-    ENTOPTIC_TRY(selection, select_effects(o.preset, o.models, o.settings, o.observer));
+    ENTOPTIC_TRY(selection, select_effects(o.preset, o.models, o.settings, o.observer, Viewer::reader));
     // There is no wearer here: the pupil that is given is that of the eye in the scene.
     std::erase_if(selection.choices, [](const Choice& choice) { return choice.entry->name == "residual_pupil"; });
     if (!o.photographic) return selection;

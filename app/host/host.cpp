@@ -96,7 +96,7 @@ Result<std::unique_ptr<Host>> Host::create(const ApplicationIdentity& applicatio
 Result<void> Host::start(const ApplicationIdentity& application, const Config& config) {
     facts_.application = application;
     facts_.config = config;
-    ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value));
+    ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value, perception::Viewer::wearer));
     facts_.selection = selection;
     if (lockstep())
         clock_ = std::make_unique<VirtualClock>();

@@ -1,0 +1,61 @@
+#include "perception/doubling.h"
+
+#include <gtest/gtest.h>
+
+namespace entoptic::perception {
+namespace {
+
+std::string refusal(const char* preset, const std::vector<std::string>& models, const std::vector<std::string>& settings, Viewer viewer) {
+    const auto selection = select(preset, models, settings);
+    if (!selection) return "not selected: " + selection.error().message;
+    const auto good = expect_no_doubling(*selection, viewer);
+    return good ? "" : good.error().message;
+}
+
+TEST(Doubling, PresetsHaveNone) {
+    for (const Preset& preset : presets())
+        for (Viewer viewer : {Viewer::wearer, Viewer::reader}) EXPECT_EQ(refusal(std::string(preset.name).c_str(), {}, {}, viewer), "") << preset.name;
+}
+
+TEST(Doubling, WhatTheWearersEyeDoesIsRefusedForAWearerOnly) {
+    struct Case {
+        std::vector<std::string> models, settings;
+        const char* says;
+    };
+    const Case cases[] = {
+        {{"acuity=luidolt_eq12"}, {}, "acuity=luidolt_eq12 with tone=display_identity counts an effect twice"},
+        {{"acuity=krawczyk_larson"}, {}, "acuity=larson_increment"},
+        {{"acuity=jacobs_bands"}, {"acuity.eccentricity_per_deg=0.3"}, "falls off beside the gaze"},
+        {{}, {"acuity.photographic=1"}, "acuity.photographic with tone=display_identity"},
+        {{"mesopic=luidolt_tint"}, {}, "own rods"},
+        {{"mesopic=krawczyk_tint"}, {"mesopic.photographic=1"}, "own rods"},
+        {{}, {"glare.photographic=1"}, "already scatters"},
+        {{}, {"afterimage.photographic=1"}, "its own afterimages"},
+        {{"dof=dioptric_disc"}, {"dof.lca=1"}, "colours the edges"},
+    };
+    for (const Case& c : cases) {
+        EXPECT_NE(refusal("combined", c.models, c.settings, Viewer::wearer).find(c.says), std::string::npos)
+            << c.says << ": " << refusal("combined", c.models, c.settings, Viewer::wearer);
+        EXPECT_EQ(refusal("combined", c.models, c.settings, Viewer::reader), "") << c.says;
+        // A tone map that does not show the scene as it is makes no such promise.
+        std::vector<std::string> other = c.models;
+        other.push_back("tone=key_reinhard");
+        EXPECT_EQ(refusal("combined", other, c.settings, Viewer::wearer), "") << c.says;
+    }
+}
+
+TEST(Doubling, ModelsThatAddTheDifferenceAreNotRefused) {
+    for (const char* model : {"acuity=larson_increment", "acuity=jacobs_bands", "mesopic=mes2", "mesopic=krawczyk_tint", "glare=cie135", "glare=luidolt_spectral",
+                              "glare=fraunhofer_mask", "dof=dioptric_disc", "dof=liu_range", "adaptation=pattanaik_slow"})
+        EXPECT_EQ(refusal("combined", {model}, {}, Viewer::wearer), "") << model;
+}
+
+TEST(Doubling, TwoToneCurvesAreRefusedForEverybody) {
+    for (Viewer viewer : {Viewer::wearer, Viewer::reader}) {
+        EXPECT_NE(refusal("kakimoto2004", {"tone=naka_rushton"}, {}, viewer).find("two tone curves"), std::string::npos);
+        EXPECT_EQ(refusal("kakimoto2004", {"tone=naka_rushton"}, {"glare.sigmoid=0"}, viewer), "");
+    }
+}
+
+}  // namespace
+}  // namespace entoptic::perception
