@@ -62,6 +62,7 @@ int run_command_line(std::vector<std::string> arguments) {
     add_curve(app, action);
     add_status(app, action);
     add_bench(app, action);
+    add_eye(app, action);
     add_config(app, action);
     try {
         return parse_and_run(app, std::move(arguments), action);
