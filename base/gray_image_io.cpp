@@ -54,10 +54,30 @@ Result<Image8> read_jpeg(const std::string& path, std::ifstream& in) {
 
 struct JpegLumaDecoder::Handle {
     tjhandle decoder = tjInitDecompress();
+    Handle() = default;
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
     ~Handle() {
         if (decoder) tjDestroy(decoder);
     }
+    Result<void> decode(std::span<const std::uint8_t> jpeg, Image8& image);
 };
+
+Result<void> JpegLumaDecoder::Handle::decode(std::span<const std::uint8_t> jpeg, Image8& image) {
+    const auto size = static_cast<unsigned long>(jpeg.size());
+    int width = 0, height = 0, subsampling = 0, colours = 0;
+    if (tjDecompressHeader3(decoder, jpeg.data(), size, &width, &height, &subsampling, &colours) != 0)
+        return failure(fmt::format("not a JPEG picture: {}.", tjGetErrorStr2(decoder)));
+    if (width > max_gray_side || height > max_gray_side)
+        return failure(fmt::format("{} x {} pixels; at most {} each way are accepted.", width, height, max_gray_side));
+    image.width = width;
+    image.height = height;
+    image.channels = 1;
+    image.data.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    if (tjDecompress2(decoder, jpeg.data(), size, image.data.data(), width, width, height, TJPF_GRAY, TJFLAG_STOPONWARNING) != 0)
+        return failure(fmt::format("a corrupt JPEG picture: {}.", tjGetErrorStr2(decoder)));
+    return {};
+}
 
 JpegLumaDecoder::JpegLumaDecoder() : handle_(std::make_unique<Handle>()) {}
 JpegLumaDecoder::~JpegLumaDecoder() = default;
@@ -66,20 +86,10 @@ JpegLumaDecoder& JpegLumaDecoder::operator=(JpegLumaDecoder&&) noexcept = defaul
 
 Result<void> JpegLumaDecoder::decode(std::span<const std::uint8_t> jpeg, Image8& image) {
     if (!handle_->decoder) return failure("libturbojpeg has no memory for a decoder.");
-    const auto size = static_cast<unsigned long>(jpeg.size());
-    int width = 0, height = 0, subsampling = 0, colours = 0;
-    if (tjDecompressHeader3(handle_->decoder, jpeg.data(), size, &width, &height, &subsampling, &colours) != 0)
-        return failure(fmt::format("not a JPEG picture: {}.", tjGetErrorStr2(handle_->decoder)));
-    if (width > max_gray_side || height > max_gray_side)
-        return failure(fmt::format("{} x {} pixels; at most {} each way are accepted.", width, height, max_gray_side));
-    image.width = width;
-    image.height = height;
-    image.channels = 1;
-    image.data.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    if (tjDecompress2(handle_->decoder, jpeg.data(), size, image.data.data(), width, width, height, TJPF_GRAY,
-                      TJFLAG_FASTDCT | TJFLAG_STOPONWARNING) != 0)
-        return failure(fmt::format("a corrupt JPEG picture: {}.", tjGetErrorStr2(handle_->decoder)));
-    return {};
+    auto done = handle_->decode(jpeg, image);
+    // A decoder that met an error in a header goes on in the middle of it with the next picture (libjpeg-turbo 2.1.5): begin anew.
+    if (!done) handle_ = std::make_unique<Handle>();
+    return done;
 }
 
 Result<Image8> read_gray(const std::string& path) {
