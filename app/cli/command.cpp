@@ -16,9 +16,17 @@ int report(const Error& error) {
     return static_cast<int>(error.kind);
 }
 
-int wrong_usage(const CLI::App& app, const std::string& message) {
+// The command that the user named, as far as there is one: `entoptic`, `entoptic eye`, `entoptic eye detect`.
+const CLI::App& named_command(const CLI::App& app) {
     const auto named = app.get_subcommands();
-    fmt::print(stderr, "entoptic: {}\nTry: entoptic {}--help\n", message, named.empty() ? "" : named[0]->get_name() + " ");
+    return named.empty() ? app : named_command(*named[0]);
+}
+
+int wrong_usage(const CLI::App& app, const std::string& message) {
+    std::string words;
+    for (const CLI::App* command = &named_command(app); command != &app; command = command->get_parent())
+        words = command->get_name() + " " + words;
+    fmt::print(stderr, "entoptic: {}\nTry: entoptic {}--help\n", message, words);
     return exit_usage;
 }
 
@@ -27,8 +35,7 @@ int parse_and_run(CLI::App& app, std::vector<std::string> arguments, const Actio
     try {
         app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
-        const auto named = app.get_subcommands();
-        fmt::print("{}", named.empty() ? app.help() : named[0]->help());
+        fmt::print("{}", named_command(app).help());
         return 0;
     } catch (const CLI::CallForVersion&) {
         fmt::print("entoptic {}\n", ENTOPTIC_VERSION);
