@@ -190,7 +190,7 @@ bool FraunhoferMask::record_far_kernel(StageIo& io, uint zone, long number) {
     io.commands.copy(staging_[at], table_, staging_[at].size(), 0, at * staging_[at].size());
     io.commands.barrier();
     const MaskKernelPush push{static_cast<float>(pitch()), near_rad(zone), static_cast<float>(safe_strength(tables)), at * mask_entries};
-    io.commands.dispatch(mask_kernel_, {table_, work()}, push, {glare_n / 64, glare_n, 1});
+    io.commands.dispatch(mask_kernel_, {table_, work()}, push, kernel_groups());
     return true;
 }
 

@@ -17,12 +17,12 @@ vec3 kernel(uint key, uvec2 offset) { return billboard[(key * glare_n + offset.y
 
 void main() {
     const uint x = gl_GlobalInvocationID.x, y = push.first_row + gl_GlobalInvocationID.y, pair = gl_GlobalInvocationID.z;
-    const uint of_grid = glare_n * glare_n, count = lit_count;
+    const uint of_grid = glare_n * glare_n, count = lit_count, n = 64 * gl_NumWorkGroups.x;      // texels of a side
     vec3 first = vec3(0.0), second = vec3(0.0);
     for (uint i = 0; i < count; ++i) {
         const LitTexel texel = lit[i];
         if (texel.place / of_grid != pair) continue;
-        const uvec2 offset = uvec2(x - texel.place % glare_n, y - texel.place / glare_n % glare_n) & (glare_n - 1);
+        const uvec2 offset = uvec2(x - texel.place % glare_n, y - texel.place / glare_n % glare_n) & (n - 1);
         vec3 k = kernel(push.first_key, offset);
         if (push.blend > 0.0) k = mix(k, kernel(push.second_key, offset), push.blend);
         first += k * texel.of[0];

@@ -81,11 +81,8 @@ Result<void> GlareModel::make_kernels() {
         {&tiles_, "glare.tiles", glare_tiles_comp_spv, 5, sizeof(TilesPush), {}},
         {&coverage_, "glare.coverage", glare_coverage_comp_spv, 2, sizeof(LatticePush), {}},
         {&splat_, "glare.splat", glare_splat_comp_spv, 4, sizeof(SplatPush), {}},
-        {&rows_forward_, "glare.rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}},
-        {&rows_inverse_, "glare.rows_inverse", glare_rows_comp_spv, 2, sizeof(FftPush), {1}},
-        {&columns_transform_, "glare.columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0}},
-        {&columns_convolve_, "glare.columns_convolve", glare_columns_comp_spv, 4, sizeof(FftPush), {1}},
-        {&columns_kernel_, "glare.columns_kernel", glare_columns_comp_spv, 4, sizeof(FftPush), {2}},
+        {&rows_transform_, "glare.rows_transform", glare_rows_comp_spv, 2, sizeof(FftPush), FftSize(glare_n).specialization(0)},
+        {&columns_transform_, "glare.columns_transform", glare_columns_comp_spv, 4, sizeof(FftPush), FftSize(glare_n).specialization(0)},
         {&gather_coverage_, "glare.gather_coverage", glare_gather_comp_spv, 5, sizeof(GatherPush), {0}},
         {&gather_veil_, "glare.gather", glare_gather_comp_spv, 5, sizeof(GatherPush), {1}},
         {&near_, "glare.near", glare_near_comp_spv, 6, sizeof(NearPush), {}},
@@ -139,8 +136,8 @@ Result<void> GlareModel::prepare() {
     setup_ = setup();
     built_.assign(2 * setup_.kernels.size(), std::nullopt);
     first_recorded_ = false;
-    if (setup_.texel_px != grid_texel_px_) {
-        grid_ = make_glare_grid(context_.views, static_cast<double>(setup_.texel_px));
+    if (!grid_.n || setup_.texel_px != grid_texel_px_) {
+        grid_ = make_glare_grid(context_.views, static_cast<double>(setup_.texel_px), setup_.least_texels);
         grid_texel_px_ = setup_.texel_px;
     }
     shares_.clear();
@@ -152,15 +149,23 @@ Result<void> GlareModel::prepare() {
         }
         shares_.push_back(share);
     }
-    ENTOPTIC_CHECK(make_picture_passes());
+    ENTOPTIC_CHECK(make_sized_passes());
     ENTOPTIC_CHECK(make_buffers());
     ENTOPTIC_CHECK(prepare_far());
     prepared_ = true;
     return {};
 }
 
-// The passes over the whole picture have the lattice's step and the source compiled in.
-Result<void> GlareModel::make_picture_passes() {
+// Transforms have the size of the grid compiled in, passes over the whole picture the lattice's step and the source.
+Result<void> GlareModel::make_sized_passes() {
+    const FftSize size(grid_.n);
+    const Wanted transforms[] = {
+        {&rows_forward_, "glare.rows", glare_rows_comp_spv, 2, sizeof(FftPush), size.specialization(0)},
+        {&rows_inverse_, "glare.rows_inverse", glare_rows_comp_spv, 2, sizeof(FftPush), size.specialization(1)},
+        {&columns_convolve_, "glare.columns_convolve", glare_columns_comp_spv, 4, sizeof(FftPush), size.specialization(1)},
+        {&columns_kernel_, "glare.columns_kernel", glare_columns_comp_spv, 4, sizeof(FftPush), size.specialization(2)},
+    };
+    for (const Wanted& w : transforms) ENTOPTIC_CHECK(make_kernel(w));
     const uint kept = has(source_scene) ? source_scene : has(source_displayed) ? source_displayed : source_excess;
     for (const GlareTerm& term : setup_.terms)
         ENTOPTIC_CHECK(make_kernel({&pixels_[term.source], "glare.pixels", glare_pixels_comp_spv, 5, sizeof(LatticePush), {grid_.step, term.source}}));
@@ -214,16 +219,18 @@ void GlareModel::record_coverage(StageIo& io) {
     if (setup_.billboard_texels > 0) delta_rows_.record_copy(c);
     c.dispatch(coverage_, {io.solid_angle, node_values_}, lattice(io), {gpu::groups_for(nodes(), 64), 1, io.views});
     c.barrier();
-    const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 1};
-    c.dispatch(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, coverage_rows_}, splat, {glare_n / 64, grid_.rows, pairs()});
+    const SplatPush splat{0, grid_.first_row, grid_.n, grid_.rows, static_cast<uint>(grid_.patches.size()), 1};
+    c.dispatch(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, coverage_rows_}, splat, {grid_.n / 64, grid_.rows, pairs()});
     c.barrier();
-    c.dispatch(rows_forward_, {coverage_rows_, twiddle_.buffer}, light_rows(), {gpu::groups_for(grid_.rows, fft_lines), pairs(), 1});
+    c.dispatch(rows_forward_, {coverage_rows_, twiddle_.buffer}, light_rows(), {row_groups(), pairs(), 1});
 }
 
 void GlareModel::record_transform(gpu::Commands& c, uint planes) {
-    c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, planes, 1});
+    const FftPush whole{0, glare_n, 3, 0, 0, 0, 0};
+    const uint groups = FftSize(glare_n).groups();
+    c.dispatch(rows_transform_, {work_, twiddle_.buffer}, whole, {groups, planes, 1});
     c.barrier();
-    c.dispatch(columns_transform_, {work_, work_, twiddle_.buffer, spectra_}, all_rows(), {glare_n / fft_lines, planes, 1});
+    c.dispatch(columns_transform_, {work_, work_, twiddle_.buffer, spectra_}, whole, {groups, planes, 1});
 }
 
 // Kernel, spectrum and coverage of one pupil diameter, into the plane of its parity.
@@ -234,14 +241,14 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     c.barrier();
     if (!record_far_kernel(io, kernel, steps)) {
         const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(safe_weights(kernel, pupil_mm))};
-        c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, {glare_n / 64, glare_n, 1});
+        c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, kernel_groups());
     }
     c.barrier();
-    c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, 2, 1});
+    c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {FftSize(grid_.n).groups(), 2, 1});
     c.barrier();
     FftPush spectrum = all_rows();
     spectrum.first_key = spectrum.second_key = key;
-    c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {glare_n / fft_lines, 2, 1});
+    c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {FftSize(grid_.n).groups(), 2, 1});
     if (std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.kernel == kernel && leaves(t); }))
         record_node_coverage(io, kernel, key);
     if (setup_.billboard_texels > 0) record_billboard(io, key);
@@ -255,9 +262,9 @@ void GlareModel::record_node_coverage(StageIo& io, uint kernel, uint key) {
     convolve.input_channels = 1;
     convolve.first_key = convolve.second_key = key;
     c.barrier();
-    c.dispatch(columns_convolve_, {coverage_rows_, work_, twiddle_.buffer, spectra_}, convolve, {glare_n / fft_lines, 3 * pairs(), 1});
+    c.dispatch(columns_convolve_, {coverage_rows_, work_, twiddle_.buffer, spectra_}, convolve, {FftSize(grid_.n).groups(), 3 * pairs(), 1});
     c.barrier();
-    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1});
+    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, light_rows(), {row_groups(), 3 * pairs(), 1});
     c.barrier();
     const GatherPush gather{grid_.nodes_x, grid_.nodes_y, grid_.step, grid_.taps, key, key, key, 0, 1, 1, 0, 0, 0, vec3(1), {}};
     c.dispatch(gather_coverage_, {work_, taps_.buffer, node_coverage_, node_exchange_, io.geometry}, gather, {gpu::groups_for(nodes(), 256), 1, io.views});
@@ -284,11 +291,11 @@ void GlareModel::record_billboard(StageIo& io, uint key) {
     convolve.input_channels = 1;
     convolve.first_key = convolve.second_key = key;
     c.barrier();
-    c.dispatch(columns_convolve_, {delta_rows_.buffer, work_, twiddle_.buffer, spectra_}, convolve, {glare_n / fft_lines, 3, 1});
+    c.dispatch(columns_convolve_, {delta_rows_.buffer, work_, twiddle_.buffer, spectra_}, convolve, {FftSize(grid_.n).groups(), 3, 1});
     c.barrier();
-    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, all_rows(), {glare_n / fft_lines, 3, 1});
+    c.dispatch(rows_inverse_, {work_, twiddle_.buffer}, all_rows(), {FftSize(grid_.n).groups(), 3, 1});
     c.barrier();
-    c.dispatch(billboard_kernel_, {work_, billboard_}, BillboardPush{.first_key = key}, {glare_n / 64, glare_n, 1});
+    c.dispatch(billboard_kernel_, {work_, billboard_}, BillboardPush{.first_key = key}, kernel_groups());
 }
 
 // The kernel is a function of the pupil diameter alone, and a continuous one: no history, so nothing can flicker or differ between two runs.
@@ -364,9 +371,9 @@ void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
     gate.always = setup_.gain == vec3(1) ? 0 : 1;
     gate.groups[gate_tiles] = {near_field() ? gpu::groups_for(io.tiles_x * io.tiles_y * io.views, 256) : 0, 1, 1};
     gate.groups[gate_pixels] = {gpu::groups_for(grid_.nodes_x, 256 / grid_.step - 2), gpu::groups_for(grid_.nodes_y, 8), io.views};
-    gate.groups[gate_splat] = {glare_n / 64, grid_.rows, pairs()};
-    gate.groups[gate_rows] = {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1};
-    gate.groups[gate_columns] = {glare_n / fft_lines, 3 * pairs(), 1};
+    gate.groups[gate_splat] = {grid_.n / 64, grid_.rows, pairs()};
+    gate.groups[gate_rows] = {row_groups(), 3 * pairs(), 1};
+    gate.groups[gate_columns] = {FftSize(grid_.n).groups(), 3 * pairs(), 1};
     gate.groups[gate_gather] = {gpu::groups_for(nodes(), 256), 1, io.views};
     gate.groups[gate_near] = {0, 1, 1};
     gate.groups[gate_apply] = {gpu::groups_for(io.width, 256), gpu::groups_for(io.height + grid_.step / 2, grid_.step), io.views};
@@ -395,7 +402,7 @@ void GlareModel::record_far(StageIo& io, const GlareTerm& term, KernelChoice cho
                         entry(gate_pixels));
     record_zone(io, node_values_, term.zone, 0, true);
     c.barrier();
-    const SplatPush splat{0, grid_.first_row, glare_n, grid_.rows, static_cast<uint>(grid_.patches.size()), 3};
+    const SplatPush splat{0, grid_.first_row, grid_.n, grid_.rows, static_cast<uint>(grid_.patches.size()), 3};
     c.dispatch_indirect(splat_, {node_values_, splat_offsets_.buffer, splat_entries_.buffer, work_}, splat, io.gate, entry(gate_splat));
     c.barrier();
     record_scattered(io, term, choice);
@@ -413,9 +420,9 @@ void GlareModel::record_scattered(StageIo& io, const GlareTerm& term, KernelChoi
     const uint first = key_of(term.kernel, choice.first), second = key_of(term.kernel, choice.second);
     BillboardPush billboard{grid_.first_row, grid_.rows, pairs(), setup_.billboard_texels, first, second, choice.blend, {}};
     if (setup_.billboard_texels > 0) {
-        billboard.groups[0] = {gpu::groups_for(grid_.rows, fft_lines), 3 * pairs(), 1};
-        billboard.groups[1] = {glare_n / fft_lines, 3 * pairs(), 1};
-        billboard.groups[2] = {glare_n / 64, grid_.rows, pairs()};
+        billboard.groups[0] = {row_groups(), 3 * pairs(), 1};
+        billboard.groups[1] = {FftSize(grid_.n).groups(), 3 * pairs(), 1};
+        billboard.groups[2] = {grid_.n / 64, grid_.rows, pairs()};
         c.fill(lit_texels_, 0, 0, sizeof(uint));
         c.barrier();
         c.dispatch_indirect(lit_, {work_, lit_texels_}, billboard, io.gate, entry(gate_splat));

@@ -48,14 +48,23 @@ RadialProfile make_profile(const std::function<RadialEntry(double)>& entry);
 // What a part of a profile scatters farther than `from_rad`, a share of the light, by channel; of the sizes where a kernel has both signs.
 glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from_rad);
 
+// How a workgroup of 256 invocations takes lines of n = 64, 128, 256 or 512 values: specialization of glare_rows.comp and glare_columns.comp.
+struct FftSize {
+    uint n;
+    explicit FftSize(uint texels) : n(texels) {}
+    uint lines() const { return 256 / (n / 8); }
+    uint groups() const { return n / lines(); }  // for n lines
+    std::vector<std::uint32_t> specialization(uint mode) const { return {mode, n, n / 8, lines()}; }
+};
+
 // One convolution. Those of all sources but `source_drawn` see the same picture and are added; one of `source_drawn` comes last.
 struct GlareTerm {
-    uint source = source_scene;    // see glare_gpu.h. Light of source_excess stays in its place, too; other light leaves it
+    uint source = source_scene;  // see glare_gpu.h. Light of source_excess stays in its place, too; other light leaves it
     uint kernel = 0;
     float sign = 1;
-    bool near = true;              // with a near field; only source_scene and source_excess can have one
-    uint turn = 0;                 // channel c takes the source's channel (c + turn) mod 3
-    uint zone = 0;                 // of GlareSetup::zones, each with a kernel of its own
+    bool near = true;  // with a near field; only source_scene and source_excess can have one
+    uint turn = 0;     // channel c takes the source's channel (c + turn) mod 3
+    uint zone = 0;     // of GlareSetup::zones, each with a kernel of its own
 };
 
 // Terms of an eye in the scene, seen by a wearer in front of a panel. `photographic`: the whole scene is scattered by kernel 0. Else the wearer's
@@ -69,16 +78,17 @@ std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint w
 struct GlareSetup {
     std::vector<RadialProfile> kernels;
     std::vector<GlareTerm> terms;
-    float texel_px = 4;            // least width of a texel of the grid, pixels
-    float near_px = 8;             // radius of the near field, pixels; below 1: none
-    float near_from = 0;           // source_scene: light above this many times the adaptation luminance has a near field
-    float rebuild_mm = 0.2f;       // distance of the kernels' pupil diameters; 0: the pupil does not matter
-    float window_sigma_deg = 0;    // Gaussian window around the gaze; 0: whole field
-    vec3 gain{1};                  // energy of the whole kernel; not 1 for a kernel with a colour cast
-    uint zones = 1;                // parts of the view from left to right, blended: a term scatters the light of its zone
-    uint billboard_texels = 0;     // up to so many lit texels of the grid the kernel is drawn at each of them, else by transforms
-    bool positive = false;         // what arrives is cut off at 0: for kernels with streaks, which the grid sharpens; not for signed ones
-    bool sigmoid = false;          // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
+    float texel_px = 4;                 // least width of a texel of the grid, pixels
+    uint least_texels = least_glare_n;  // of a side of the grid, which is as small as texel_px allows
+    float near_px = 8;                  // radius of the near field, pixels; below 1: none
+    float near_from = 0;                // source_scene: light above this many times the adaptation luminance has a near field
+    float rebuild_mm = 0.2f;            // distance of the kernels' pupil diameters; 0: the pupil does not matter
+    float window_sigma_deg = 0;         // Gaussian window around the gaze; 0: whole field
+    vec3 gain{1};                       // energy of the whole kernel; not 1 for a kernel with a colour cast
+    uint zones = 1;                     // parts of the view from left to right, blended: a term scatters the light of its zone
+    uint billboard_texels = 0;          // up to so many lit texels of the grid the kernel is drawn at each of them, else by transforms
+    bool positive = false;  // what arrives is cut off at 0: for kernels with streaks, which the grid sharpens; not for signed ones
+    bool sigmoid = false;   // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
 };
 
 class GlareModel : public Model {
@@ -101,17 +111,21 @@ protected:
     virtual Result<void> prepare_far() { return {}; }
     virtual void record_first(StageIo&) {}
     virtual bool record_far_kernel(StageIo&, uint /*kernel*/, long /*steps*/) { return false; }
-    // Forward transform of whole planes of work(), from the first on.
+    // Forward transform of whole planes of glare_n^2 values of work(), from the first on.
     void record_transform(gpu::Commands& commands, uint planes);
     const gpu::Buffer& work() const { return work_; }
+    // Of passes that draw a kernel into work(), 64 texels a workgroup.
+    gpu::Groups kernel_groups() const { return {grid_.n / 64, grid_.n, 1}; }
 
     // The two built kernels between which the eye is: by default diameters in steps of rebuild_mm. Kernels of even and odd steps are kept.
     struct KernelChoice {
         long first = 0, second = 0;
-        float blend = 0;      // 0: first .. 1: second
+        float blend = 0;  // 0: first .. 1: second
     };
     virtual KernelChoice choose_kernel(const StageIo& io);
-    double diameter_mm(long steps) const { return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4; }
+    double diameter_mm(long steps) const {
+        return setup_.rebuild_mm > 0 ? std::max(static_cast<double>(steps) * static_cast<double>(setup_.rebuild_mm), 0.5) : 4;
+    }
     // Upper bound of the share of the light that leaves its pixel, for the gate.
     virtual double scattered(uint kernel, KernelChoice choice) const;
     // The near field of a term, into near_light() of the tiles in near_tiles(); `add`: to what is there.
@@ -136,7 +150,7 @@ protected:
         return {};
     }
 
-    float near_rad(uint kernel) const;     // the near field of a kernel ends here
+    float near_rad(uint kernel) const;  // the near field of a kernel ends here
     double smallest_step() const { return grid_.smallest_step; }
     double pitch() const { return grid_.pitch; }
     const ModelContext context_;
@@ -144,7 +158,7 @@ protected:
 private:
     Result<void> prepare();
     Result<void> make_buffers();
-    Result<void> make_picture_passes();
+    Result<void> make_sized_passes();
     void record_coverage(StageIo& io);
     void record_kernel(StageIo& io, uint kernel, long steps);
     void record_node_coverage(StageIo& io, uint kernel, uint key);
@@ -169,19 +183,20 @@ private:
     LatticePush lattice(const StageIo& io, uint turn = 0) const {
         return {io.width, io.height, grid_.nodes_x, grid_.nodes_y, grid_.step, io.tiles_x, io.tiles_y, near_field() ? 1u : 0u, turn};
     }
-    FftPush all_rows() const { return {0, glare_n, 3, 0, 0, 0, static_cast<float>(grid_.damping)}; }
+    uint row_groups() const { return gpu::groups_for(grid_.rows, FftSize(grid_.n).lines()); }
+    FftPush all_rows() const { return {0, grid_.n, 3, 0, 0, 0, static_cast<float>(grid_.damping)}; }
     FftPush light_rows() const { return {grid_.first_row, grid_.rows, 3, 0, 0, 0, 0}; }
 
     GlareSetup setup_;
     bool prepared_ = false, first_recorded_ = false;
     GlareGrid grid_;
     float grid_texel_px_ = 0;
-    std::vector<glm::dvec3> shares_;     // by kernel: share of the light that leaves its pixel by each part of weight 1
-    std::vector<std::optional<long>> built_;       // by key: diameter (in steps) of the kernel there
+    std::vector<glm::dvec3> shares_;          // by kernel: share of the light that leaves its pixel by each part of weight 1
+    std::vector<std::optional<long>> built_;  // by key: diameter (in steps) of the kernel there
 
-    gpu::Kernel gate_, tiles_, coverage_, splat_, rows_forward_, rows_inverse_, columns_transform_, columns_convolve_, columns_kernel_,
-        gather_coverage_, gather_veil_, near_, kernel_kernel_, apply_, apply_drawn_;
-    gpu::Kernel pixels_[4];                        // by source
+    gpu::Kernel gate_, tiles_, coverage_, splat_, rows_transform_, columns_transform_, rows_forward_, rows_inverse_, columns_convolve_,
+        columns_kernel_, gather_coverage_, gather_veil_, near_, kernel_kernel_, apply_, apply_drawn_;
+    gpu::Kernel pixels_[4];  // by source
     gpu::Kernel zone_, lit_, billboard_choice_, billboard_kernel_, billboards_;
     StaticBuffer delta_rows_;
     gpu::Buffer lit_texels_, billboard_;

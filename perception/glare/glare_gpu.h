@@ -9,11 +9,10 @@
 namespace entoptic::perception {
 #endif
 
-const uint glare_n = 512;              // texels of a side of the grid
+const uint glare_n = 512;              // texels of a side of the largest grid; GlareGrid::n has those of this one
+const uint least_glare_n = 64;
 const uint glare_row = 520;            // floats or complex numbers from one row to the next: 8 more, so that columns do not collide in a cache
 const uint glare_plane = 512 * 520;
-const uint fft_threads = 64;           // one line of 512 by 64 threads of 8 values
-const uint fft_lines = 4;              // lines a workgroup
 
 // A kernel over the angle: entries evenly in log(theta) from radial_first to pi, so that linear interpolation of theta^-3 is good to 1e-5.
 const uint radial_entries = 4096;

@@ -10,8 +10,8 @@ namespace entoptic::perception {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double middle = glare_n / 2;
-
+// Texels may be so much wider than asked for before the grid takes twice as many: a full eye of a Vive Pro has 1.09.
+constexpr double most_widened = 1.1;
 glm::dvec3 direction_at(const EyeGeometry& g, double x, double y) { return geometry::geometry_direction(g, {x, y}); }
 
 GlarePatch patch_towards(uint view, glm::dvec3 forward) {
@@ -30,10 +30,10 @@ glm::dvec2 angles_in(const GlarePatch& patch, glm::dvec3 direction) {
 
 // What a view looks like, from samples of its visible pixels.
 struct ViewField {
-    GlarePatch patch;                 // about the middle of the field
-    double half_x = 0, half_y = 0;    // rad
-    double pixel = 0;                 // mean step, rad
-    double smallest_step = 1;         // rad
+    GlarePatch patch;               // about the middle of the field
+    double half_x = 0, half_y = 0;  // rad
+    double pixel = 0;               // mean step, rad
+    double smallest_step = 1;       // rad
 };
 
 std::vector<glm::dvec2> visible_samples(const EyeGeometry& g) {
@@ -75,7 +75,8 @@ ViewField field_of(const EyeGeometry& g, uint view) {
         field.half_y = 0.5 * (high.y - low.y);
         const glm::dvec2 centre = 0.5 * (low + high);
         if (iteration < 3)
-            field.patch = patch_towards(view, field.patch.forward + std::tan(centre.x) * field.patch.right - std::tan(centre.y) * field.patch.up);
+            field.patch =
+                patch_towards(view, field.patch.forward + std::tan(centre.x) * field.patch.right - std::tan(centre.y) * field.patch.up);
     }
     return field;
 }
@@ -96,7 +97,7 @@ double source_share(const GlarePatch& patch, glm::dvec3 d) {
 // 1/sqrt(3) = 0.577 at a cube's corner; below 0.5 a face has no say.
 double face_share(const GlarePatch& patch, glm::dvec3 d) { return smooth((glm::dot(patch.forward, d) - 0.5) / 0.35); }
 
-void choose_patches(std::span<const EyeGeometry> views, double texel_px, GlareGrid& grid) {
+void choose_patches(std::span<const EyeGeometry> views, double texel_px, uint least_texels, GlareGrid& grid) {
     double reach_x = 0, reach_y = 0, pixel = 0;
     grid.smallest_step = 1;
     for (uint view = 0; view < views.size(); ++view) {
@@ -117,10 +118,13 @@ void choose_patches(std::span<const EyeGeometry> views, double texel_px, GlareGr
         grid.smallest_step = std::min(grid.smallest_step, field.smallest_step);
     }
     grid.pixel_rad = pixel;
-    grid.pitch = std::max(2 * std::max(reach_x, reach_y) / (glare_occupied * glare_n), texel_px * pixel);
+    const double texels = 2 * std::max(reach_x, reach_y) / (glare_occupied * texel_px * pixel);
+    grid.n = least_texels;
+    while (grid.n < glare_n && grid.n * most_widened < texels) grid.n *= 2;
+    grid.pitch = texel_px * pixel * std::max(texels / grid.n, 1.0);
     // Nodes lie up to 16 pixels outside the picture, texels of a tap one further.
-    const double rows = std::min(reach_y / grid.pitch + 4 + 16 * pixel / grid.pitch, middle - 2);
-    grid.first_row = static_cast<uint>(middle - std::ceil(rows));
+    const double rows = std::min(reach_y / grid.pitch + 4 + 16 * pixel / grid.pitch, grid.n / 2 - 2.0);
+    grid.first_row = grid.n / 2 - static_cast<uint>(std::ceil(rows));
     grid.rows = 2 * static_cast<uint>(std::ceil(rows)) + 1;
     grid.step = 1;
     while (grid.step < 8 && 2 * grid.step * pixel <= grid.pitch * 1.01) grid.step *= 2;
@@ -129,14 +133,15 @@ void choose_patches(std::span<const EyeGeometry> views, double texel_px, GlareGr
 
 NodeTap tap_of(const GlareGrid& grid, uint patch_index, glm::dvec3 d, double weight) {
     const glm::dvec2 at = angles_in(grid.patches[patch_index], d) / grid.pitch;
-    const double low_x = 2, high_x = glare_n - 3.0, low_y = grid.first_row + 1.0, high_y = grid.first_row + grid.rows - 2.0;
+    const double middle = grid.n / 2, low_x = 2, high_x = grid.n - 3.0, low_y = grid.first_row + 1.0,
+                 high_y = grid.first_row + grid.rows - 2.0;
     const auto within = [](double t, double low, double high) { return std::isfinite(t) ? std::clamp(t, low, high) : low; };
     return {patch_index, static_cast<float>(within(middle + at.x, low_x, high_x)), static_cast<float>(within(middle + at.y, low_y, high_y)),
             static_cast<float>(weight)};
 }
 
 struct PendingEntry {
-    uint texel;          // patch, row, column
+    uint texel;  // patch, row, column
     SplatEntry entry;
 };
 
@@ -146,7 +151,8 @@ void add_splat(const NodeTap& tap, uint node, std::vector<PendingEntry>& pending
     const glm::dvec3 down = glare::spline_weights(static_cast<double>(tap.v) - y);
     for (uint k = 0; k < 9; ++k) {
         const double w = across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * static_cast<double>(tap.weight);
-        if (w > 0) pending.push_back({(tap.patch_index * glare_n + y + k / 3 - 1) * glare_n + x + k % 3 - 1, {node, static_cast<float>(w)}});
+        if (w > 0)
+            pending.push_back({(tap.patch_index * glare_n + y + k / 3 - 1) * glare_n + x + k % 3 - 1, {node, static_cast<float>(w)}});
     }
 }
 
@@ -180,12 +186,15 @@ void place_nodes(std::span<const EyeGeometry> views, GlareGrid& grid) {
         const EyeGeometry& g = views[view];
         const uint patches = g.kind == geometry_equirect ? 6 : 1;
         for (uint i = 0; i < grid.nodes_x * grid.nodes_y; ++i) {
-            const double x = (static_cast<double>(i % grid.nodes_x) - 1) * grid.step + 0.5, y = (static_cast<double>(i / grid.nodes_x) - 1) * grid.step + 0.5;
+            const double x = (static_cast<double>(i % grid.nodes_x) - 1) * grid.step + 0.5,
+                         y = (static_cast<double>(i / grid.nodes_x) - 1) * grid.step + 0.5;
             const glm::dvec3 d = direction_at(g, x, y);
             const uint node = view * grid.nodes_x * grid.nodes_y + i;
             NodeTap taps[3] = {};
-            if (patches == 6) sphere_taps(grid, first_patch, d, taps);
-            else taps[0] = tap_of(grid, first_patch, d, 1);
+            if (patches == 6)
+                sphere_taps(grid, first_patch, d, taps);
+            else
+                taps[0] = tap_of(grid, first_patch, d, 1);
             grid.node_taps.insert(grid.node_taps.end(), taps, taps + grid.taps);
             for (uint f = 0; f < patches; ++f) {
                 const double share = patches == 6 ? source_share(grid.patches[first_patch + f], d) : 1;
@@ -199,9 +208,9 @@ void place_nodes(std::span<const EyeGeometry> views, GlareGrid& grid) {
 
 }  // namespace
 
-GlareGrid make_glare_grid(std::span<const EyeGeometry> views, double texel_px) {
+GlareGrid make_glare_grid(std::span<const EyeGeometry> views, double texel_px, uint least_texels) {
     GlareGrid grid;
-    choose_patches(views, texel_px, grid);
+    choose_patches(views, texel_px, least_texels, grid);
     place_nodes(views, grid);
     return grid;
 }

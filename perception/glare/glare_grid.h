@@ -21,6 +21,7 @@ struct GlarePatch {
 };
 
 struct GlareGrid {
+    uint n = 0;                           // texels of a side: 64, 128, 256 or 512
     double pitch = 0;                     // rad a texel
     double smallest_step = 0;             // between pixels, rad
     double pixel_rad = 0;                 // mean pixel step, rad: near_px times this is the radius of the near field
@@ -38,7 +39,8 @@ struct GlareGrid {
 // Share of the grid's side that light may occupy; the rest is zero padding against wrap-around (facts 3.3c: 25 % of padding leaves 3.4 %).
 constexpr double glare_occupied = 0.72;
 
-// `texel_px`: least width of a texel in mean pixels; the field's own size may ask for more.
-GlareGrid make_glare_grid(std::span<const EyeGeometry> views, double texel_px);
+// `texel_px`: least width of a texel in mean pixels; the field's own size may ask for more. The grid has as few texels as that allows, but not
+// fewer than `least_texels` a side.
+GlareGrid make_glare_grid(std::span<const EyeGeometry> views, double texel_px, uint least_texels = least_glare_n);
 
 }  // namespace entoptic::perception

@@ -22,7 +22,8 @@ vec3 kernel(vec2 offset) {
 
 void main() {
     const uvec2 at = gl_GlobalInvocationID.xy;
-    const ivec2 texel = ivec2(at) - ivec2(greaterThanEqual(at, uvec2(glare_n / 2))) * int(glare_n);
+    const uint n = gl_NumWorkGroups.y;       // texels of a side
+    const ivec2 texel = ivec2(at) - ivec2(greaterThanEqual(at, uvec2(n / 2))) * int(n);
     const int far = max(abs(texel.x), abs(texel.y));
     const int samples = far <= 4 ? 8 : far <= 16 ? 4 : far <= 64 ? 2 : 1;
     vec3 sum = vec3(0.0);

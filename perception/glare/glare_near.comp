@@ -4,6 +4,7 @@
 
 // The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it, from its profile,
 // without the texture that the far field may have. One workgroup a tile; the kernel is made for the tile's own pixels per degree.
+// Of the excess over the panel's white, a pixel that is white in every channel gets nothing: the panel shows it as it is.
 #include "perception/glare/glare_gpu.h"
 #include "perception/glare/glare_math.glsl"
 #include "perception/observer_state.h"
@@ -26,14 +27,16 @@ layout(scalar, push_constant) uniform PushBlock { NearPush push; };
 
 shared vec3 weights[max_side * max_side];
 shared uint lit_rows;      // a bit for each row of pixels, from max_near_px above the tile to as many below, that holds light above the threshold
+shared int lit_left, lit_right;      // and where, in columns from the tile's first
 
 vec3 kernel(float theta) {
     return radial_kernel(theta, push.profile, push.weights) * near_share(theta, push.near);
 }
 
-// Integral of the kernel over the pixel at (dx, dy), sr; across and down are the steps of one pixel in direction.
+// Integral of the kernel over the pixel at (dx, dy), sr; across and down are the steps of one pixel in direction. A kernel that falls with the third
+// power of the distance d, in pixels, is off by 9 / (24 d^2 samples^2): 0.6 % at most, but for the pixels next to the source.
 vec3 pixel_weight(ivec2 d, vec3 across, vec3 down, float solid_angle) {
-    const int samples = max(abs(d.x), abs(d.y)) <= 2 ? 8 : 3;
+    const int distance = max(abs(d.x), abs(d.y)), samples = distance <= 1 ? 8 : distance <= 2 ? 4 : distance <= 4 ? 3 : 2;
     vec3 sum = vec3(0.0);
     for (int j = 0; j < samples; ++j)
         for (int i = 0; i < samples; ++i) {
@@ -71,14 +74,22 @@ void main() {
         const bool sphere = g.kind == geometry_equirect;
         // Where is light at all? A lamp fills few of the rows in reach.
         barrier();
-        if (lane == 0) lit_rows = 0u;
+        if (lane == 0) {
+            lit_rows = 0u;
+            lit_left = int(tile_width + max_near_px);
+            lit_right = -int(max_near_px) - 1;
+        }
         barrier();
         const uint reach_x = tile_width + 2 * uint(radius), reach_y = tile_height + 2 * uint(radius);
         for (uint i = lane; i < reach_x * reach_y; i += tile_width * tile_height) {
-            const int row = int(i / reach_x) - radius, y = int(corner.y) + row, x = column_of(int(corner.x + i % reach_x) - radius, sphere);
+            const int row = int(i / reach_x) - radius, column = int(i % reach_x) - radius;
+            const int y = int(corner.y) + row, x = column_of(int(corner.x) + column, sphere);
             if (x < 0 || y < 0 || y >= int(push.height)) continue;
             const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
-            if (max(pixel.r, max(pixel.g, pixel.b)) > threshold) atomicOr(lit_rows, 1u << uint(row + int(max_near_px)));
+            if (max(pixel.r, max(pixel.g, pixel.b)) <= threshold) continue;
+            atomicOr(lit_rows, 1u << uint(row + int(max_near_px)));
+            atomicMin(lit_left, column);
+            atomicMax(lit_right, column);
         }
         barrier();
         const uint lit = lit_rows;
@@ -89,22 +100,27 @@ void main() {
             if (inside && push.add == 0) near_light[at] = vec3(0.0);
             continue;
         }
-        for (uint i = lane; i < uint(side * side); i += tile_width * tile_height) {
+        // The kernel is the same on both sides.
+        const uint last_weight = uint(side * side) - 1;
+        for (uint i = lane; i <= last_weight / 2; i += tile_width * tile_height) {
             const ivec2 d = ivec2(int(i) % side, int(i) / side) - radius;
-            weights[i] = d == ivec2(0) ? vec3(0.0) : pixel_weight(d, across, down, solid_angle);
+            weights[i] = weights[last_weight - i] = d == ivec2(0) ? vec3(0.0) : pixel_weight(d, across, down, solid_angle);
         }
         barrier();
         if (!inside) continue;
         const vec4 here = scene[at];
         const vec3 own = push.leaves != 0 ? excess(here, threshold) : vec3(0.0);
+        const int column = int(gl_LocalInvocationID.x);
+        const bool loses = own != vec3(0.0), white = push.near_from < 0.0 && min(here.r, min(here.g, here.b)) >= threshold;
+        const int first = loses ? -radius : max(-radius, lit_left - column), last = loses ? radius : min(radius, lit_right - column);
         vec3 sum = vec3(0.0);
-        for (int dy = -radius; dy <= radius; ++dy) {
+        for (int dy = -radius; dy <= radius && !white; ++dy) {
             const int y = int(px.y) + dy;
             if (y < 0 || y >= int(push.height)) continue;
             // Rows without light matter only to pixels that have some to lose.
             const bool row_lit = (lit >> uint(y - int(corner.y) + int(max_near_px)) & 1u) != 0u;
-            if (!row_lit && own == vec3(0.0)) continue;
-            for (int dx = -radius; dx <= radius; ++dx) {
+            if (!row_lit && !loses) continue;
+            for (int dx = first; dx <= last; ++dx) {
                 const int x = column_of(int(px.x) + dx, sphere);
                 if (x < 0) continue;
                 const vec4 there = scene[base + uint(y) * push.width + uint(x)];

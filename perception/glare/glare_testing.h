@@ -82,14 +82,14 @@ inline Ring ring_around(const ImageF& out, const EyeGeometry& g, int lx, int ly,
     return ring;
 }
 
-using Plane = std::vector<std::complex<double>>;    // 512 x 512
+using Plane = std::vector<std::complex<double>>;    // square
 inline void fftw(Plane& plane, int sign) {
+    const int n = static_cast<int>(std::lround(std::sqrt(plane.size())));
     auto* data = reinterpret_cast<fftw_complex*>(plane.data());
-    const fftw_plan plan = fftw_plan_dft_2d(glare_n, glare_n, data, data, sign, FFTW_ESTIMATE);
+    const fftw_plan plan = fftw_plan_dft_2d(n, n, data, data, sign, FFTW_ESTIMATE);
     fftw_execute(plan);
     fftw_destroy_plan(plan);
 }
-
 
 // The engine's algorithm in double, with FFTW: same grid, one view.
 class GlareTwin {
@@ -124,7 +124,7 @@ public:
                 std::vector<glm::dvec3> weights;
                 for (int dy = -radius; dy <= radius; ++dy)
                     for (int dx = -radius; dx <= radius; ++dx) {
-                        const int n = std::max(std::abs(dx), std::abs(dy)) <= 2 ? 8 : 3;
+                        const int distance = std::max(std::abs(dx), std::abs(dy)), n = distance <= 1 ? 8 : distance <= 2 ? 4 : distance <= 4 ? 3 : 2;
                         glm::dvec3 sum{0};
                         for (int j = 0; j < n && (dx || dy); ++j)
                             for (int i = 0; i < n; ++i) {
@@ -149,9 +149,10 @@ private:
     double near_rad(bool near) const { return std::max(near ? std::floor(near_px_) * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch); }
     Plane spectrum_of(const Kernel& kernel, int c, bool near) const {
         const double within = near_rad(near);
-        Plane plane(glare_n * glare_n);
-        for (int y = -256; y < 256; ++y)
-            for (int x = -256; x < 256; ++x) {
+        Plane plane(grid_.n * grid_.n);
+        const int half = static_cast<int>(grid_.n) / 2;
+        for (int y = -half; y < half; ++y)
+            for (int x = -half; x < half; ++x) {
                 const int far = std::max(std::abs(x), std::abs(y)), n = far <= 4 ? 8 : far <= 16 ? 4 : far <= 64 ? 2 : 1;
                 double sum = 0;
                 for (int j = 0; j < n; ++j)
@@ -159,10 +160,11 @@ private:
                         const double theta = std::hypot(x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5) * grid_.pitch;
                         sum += kernel(theta)[c] * (1 - glare::near_share(theta, within));
                     }
-                plane[static_cast<std::size_t>(((y + 512) % 512) * 512 + (x + 512) % 512)] = sum / (n * n);
+                plane[static_cast<std::size_t>((y + 2 * half) % (2 * half) * 2 * half + (x + 2 * half) % (2 * half))] = sum / (n * n);
             }
         fftw(plane, FFTW_FORWARD);
-        for (uint i = 0; i < glare_n * glare_n; ++i) plane[i] *= glare::sharpening((i % glare_n) / 512.0, grid_.damping) * glare::sharpening((i / glare_n) / 512.0, grid_.damping);
+        const auto sharpened = [&](std::size_t i) { return glare::sharpening(static_cast<double>(i) / grid_.n, grid_.damping); };
+        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] *= sharpened(i % grid_.n) * sharpened(i / grid_.n);
         return plane;
     }
     // Node n stands on pixel step (n - 1). Calls f(node, weight) for every node that the pixel shares light with.
@@ -182,12 +184,14 @@ private:
                 const double light = image.at(x, y, 0) * geometry::geometry_solid_angle(g_, {x + 0.5, y + 0.5});
                 for_nodes(x, y, [&](std::size_t node, double w) { nodes[node] += w * light; });
             }
-        Plane plane(glare_n * glare_n);
-        for (std::size_t t = 0; t < plane.size(); ++t)
-            for (uint e = grid_.splat_offsets[t]; e < grid_.splat_offsets[t + 1]; ++e)
+        Plane plane(grid_.n * grid_.n);
+        for (std::size_t t = 0; t < plane.size(); ++t) {
+            const std::size_t list = t / grid_.n * glare_n + t % grid_.n;
+            for (uint e = grid_.splat_offsets[list]; e < grid_.splat_offsets[list + 1]; ++e)
                 plane[t] += static_cast<double>(grid_.splat_entries[e].weight) * nodes[grid_.splat_entries[e].node];
+        }
         fftw(plane, FFTW_FORWARD);
-        for (std::size_t t = 0; t < plane.size(); ++t) plane[t] *= spectrum[t] / (512.0 * 512.0);
+        for (std::size_t t = 0; t < plane.size(); ++t) plane[t] *= spectrum[t] / static_cast<double>(plane.size());
         fftw(plane, FFTW_BACKWARD);
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             const NodeTap& tap = grid_.node_taps[n];
@@ -195,7 +199,7 @@ private:
             const glm::dvec3 across = glare::spline_weights(static_cast<double>(tap.u) - x), down = glare::spline_weights(static_cast<double>(tap.v) - y);
             nodes[n] = 0;
             for (uint k = 0; k < 9; ++k)
-                nodes[n] += across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * plane[(y + k / 3 - 1) * glare_n + x + k % 3 - 1].real();
+                nodes[n] += across[static_cast<int>(k % 3)] * down[static_cast<int>(k / 3)] * plane[(y + k / 3 - 1) * grid_.n + x + k % 3 - 1].real();
         }
         ImageD out(image.width, image.height, 1);
         for (int y = 0; y < image.height; ++y)

@@ -158,7 +158,7 @@ bool LuidoltSpectral::record_far_kernel(StageIo& io, uint kernel, long steps) {
                                   static_cast<float>(safe(pupil_mm)),
                                   static_cast<float>(glare_patch_um),
                                   particles_.pairs > 0 ? 1u : 0u};
-    c.dispatch(textured_kernel_, {spectrum_table_.buffer, halo_table_.buffer, pupil_structure_, work()}, push, {glare_n / 64, glare_n, 1});
+    c.dispatch(textured_kernel_, {spectrum_table_.buffer, halo_table_.buffer, pupil_structure_, work()}, push, kernel_groups());
     return true;
 }
 

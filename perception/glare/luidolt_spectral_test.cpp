@@ -76,44 +76,50 @@ std::vector<vec2> twiddles() {
     return table;
 }
 
-TEST(Glare, TransformIsThatOfFftw) {
+void compare_with_fftw(uint n) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     std::vector<vec2> data(glare_plane);
-    Plane expected(glare_n * glare_n);
+    Plane expected(n * n);
     double energy_in = 0;
-    for (uint y = 0; y < glare_n; ++y)
-        for (uint x = 0; x < glare_n; ++x) {
+    for (uint y = 0; y < n; ++y)
+        for (uint x = 0; x < n; ++x) {
             const vec2 v(glm::dvec2(normal(random), normal(random)));
             data[y * glare_row + x] = v;
-            expected[y * glare_n + x] = {v.x, v.y};
-            energy_in += std::norm(expected[y * glare_n + x]);
+            expected[y * n + x] = {v.x, v.y};
+            energy_in += std::norm(expected[y * n + x]);
         }
-    const Shader rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0});
+    const FftSize size(n);
+    const Shader rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), size.specialization(0)),
+        columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), size.specialization(0));
     const gpu::Buffer grid = buffer_of(data), twiddle = buffer_of(twiddles()), unused = buffer_of(std::vector<float>(64));
-    const FftPush push{0, glare_n, 3, 0, 0, 0, 0};
+    const FftPush push{0, n, 3, 0, 0, 0, 0};
     run_on_gpu([&](gpu::Commands& c) {
-        c.dispatch(rows.kernel, {grid, twiddle}, push, {glare_n / fft_lines, 1, 1});
+        c.dispatch(rows.kernel, {grid, twiddle}, push, {size.groups(), 1, 1});
         c.barrier();
-        c.dispatch(columns.kernel, {grid, grid, twiddle, unused}, push, {glare_n / fft_lines, 1, 1});
+        c.dispatch(columns.kernel, {grid, grid, twiddle, unused}, push, {size.groups(), 1, 1});
     });
     fftw(expected, FFTW_FORWARD);
     double worst = 0, squares = 0, energy_out = 0;
     const double rms = std::sqrt(energy_in);      // of the transform's values
-    for (uint y = 0; y < glare_n; ++y)
-        for (uint x = 0; x < glare_n; ++x) {
+    for (uint y = 0; y < n; ++y)
+        for (uint x = 0; x < n; ++x) {
             const vec2 v = grid.as<vec2>()[y * glare_row + x];
-            const double error = std::abs(std::complex<double>(v.x, v.y) - expected[y * glare_n + x]) / rms;
+            const double error = std::abs(std::complex<double>(v.x, v.y) - expected[y * n + x]) / rms;
             worst = std::max(worst, error);
             squares += error * error;
             energy_out += static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y;
         }
-    const double rms_error = std::sqrt(squares / (glare_n * glare_n));
-    ledger(name, "fft 512", "float against FFTW double rms", rms_error);
-    ledger(name, "fft 512", "float against FFTW double max", worst);
+    const double rms_error = std::sqrt(squares / (n * n));
+    const std::string setting = "fft " + std::to_string(n);
+    ledger(name, setting, "float against FFTW double rms", rms_error);
+    ledger(name, setting, "float against FFTW double max", worst);
     EXPECT_LT(rms_error, 2.4e-7);
     EXPECT_LT(worst, 1.4e-6);
-    EXPECT_NEAR(energy_out / (energy_in * glare_n * glare_n), 1, 1e-6) << "Parseval";
+    EXPECT_NEAR(energy_out / (energy_in * n * n), 1, 1e-6) << "Parseval";
+}
+TEST(Glare, TransformIsThatOfFftw) {
+    for (const uint n : {64u, 128u, 256u, 512u}) compare_with_fftw(n);
 }
 
 TEST(Glare, AiryPatternIsThatOfTheTable) {
@@ -222,7 +228,8 @@ TEST(Glare, StructureFactorIsTheSumOverTheParticles) {
     ASSERT_EQ(field.pairs, 2u);
     const Shader particles("particles", luidolt_spectral_particles_comp_spv, 4, sizeof(StructurePush)),
         structure("structure", luidolt_spectral_structure_comp_spv, 3, sizeof(StructurePush)),
-        rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), {0}), columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), {0});
+        rows("rows", glare_rows_comp_spv, 2, sizeof(FftPush), FftSize(glare_n).specialization(0)),
+        columns("columns", glare_columns_comp_spv, 4, sizeof(FftPush), FftSize(glare_n).specialization(0));
     const gpu::Buffer cells = buffer_of(field.cell_offsets), list = buffer_of(field.particles), mean = buffer_of(field.mean), twiddle = buffer_of(twiddles()),
                       grid = buffer_of(std::vector<vec2>(2 * glare_plane)), result = buffer_of(std::vector<float>(2 * structure_n * structure_n)),
                       unused = buffer_of(std::vector<float>(64));
@@ -231,9 +238,9 @@ TEST(Glare, StructureFactorIsTheSumOverTheParticles) {
     run_on_gpu([&](gpu::Commands& c) {
         c.dispatch(particles.kernel, {cells, list, mean, grid}, push, {glare_n / 32, glare_n / 8, 2});
         c.barrier();
-        c.dispatch(rows.kernel, {grid, twiddle}, fft, {glare_n / fft_lines, 2, 1});
+        c.dispatch(rows.kernel, {grid, twiddle}, fft, {FftSize(glare_n).groups(), 2, 1});
         c.barrier();
-        c.dispatch(columns.kernel, {grid, grid, twiddle, unused}, fft, {glare_n / fft_lines, 2, 1});
+        c.dispatch(columns.kernel, {grid, grid, twiddle, unused}, fft, {FftSize(glare_n).groups(), 2, 1});
         c.barrier();
         c.dispatch(structure.kernel, {grid, mean, result}, push, {structure_n / 32, structure_n / 8, 2});
     });
@@ -530,7 +537,8 @@ TEST(Glare, FloatDoubleAndReferenceAgree) {
         ledger(name, scene.what, "double against reference p99", formula.p99);
         ledger(name, scene.what, "GPU against reference p99 dE_ITP", display.p99);
         ledger(name, scene.what, "GPU against reference mean dE_ITP", display.mean);
-        EXPECT_LT(numeric.max, 1e-4) << scene.what;
+        // Rounding of the transform: a lamp of 1e5 spreads 1e-7 of itself over pixels of 1. It differs with the size of the grid.
+        EXPECT_LT(numeric.max, 2e-4) << scene.what;
         EXPECT_LT(formula.p99, 0.12) << scene.what;
         EXPECT_LT(display.p99, 8.0) << scene.what;
         EXPECT_LT(display.mean, 0.8) << scene.what;
