@@ -9,6 +9,13 @@ constexpr std::size_t remembered = 8;
 constexpr DurationNs margin = 1'000'000;          // for waking up and for what estimates do not know
 constexpr std::int64_t prediction_was_wrong = 2;  // refreshes: a frame promised later than this is not held back
 
+std::int64_t median(const std::deque<std::int64_t>& values) {
+    std::vector<std::int64_t> sorted(values.begin(), values.end());
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    return *middle;
+}
+
 }  // namespace
 
 std::int64_t RefreshGrid::first_at(TimeNs time) const {
@@ -42,6 +49,9 @@ FramePacing::Prediction FramePacing::predict(TimeNs now) {
     p.refresh = std::max(grid_.first_at(free + lead()), last_promised_ + 1);
     p.display_time = grid_.light(p.refresh);
     p.start_time = grid_.deadline(p.refresh) - lead() - application_.value() - margin;
+    steps_.push_back(last_promised_ < 0 ? 1 : p.refresh - last_promised_);
+    if (steps_.size() > remembered) steps_.pop_front();
+    p.period = grid_.period * median(steps_);
     last_promised_ = p.refresh;
     return p;
 }

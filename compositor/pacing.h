@@ -44,7 +44,8 @@ private:
 //   refresh after the one promised last, and not while an older frame of its own still waits to be composed. A slow compositor slows the
 //   application down to its own pace; nobody runs ahead by more than one frame.
 // - The predicted display time is that of the first refresh that the frame can make, given how long the application and the composition
-//   took lately and what the compositor is busy with. Predictions rise by whole periods.
+//   took lately and what the compositor is busy with. Predictions rise by whole periods, and the application is told the period of the pace
+//   that it is kept to, not the display's, when it does not get every refresh.
 // - The compositor wakes just in time for a refresh (estimate + margin before it) and takes the newest frame that was promised for it or
 //   earlier. If none is new, it composes the last one again with the newest pose: reprojection.
 // - On a device that needs more than a period for a frame (lavapipe), reprojecting would take the processor away from the application, and
@@ -59,6 +60,7 @@ public:
         std::int64_t refresh = 0;
         TimeNs display_time = 0;  // middle of its light
         TimeNs start_time = 0;    // when the application should start, at the earliest
+        DurationNs period = 0;    // between frames at the present pace: whole periods of the display, the median of the last promises
     };
     Prediction predict(TimeNs now);
     void application_took(DurationNs duration) { application_.add(duration); }
@@ -85,6 +87,7 @@ private:
 
     RefreshGrid grid_;
     DurationEstimate composition_, application_;
+    std::deque<std::int64_t> steps_;  // from promise to promise, in refreshes
     std::int64_t last_promised_ = -1, last_taken_ = -1, last_shown_ = -1;
     TimeNs composing_since_ = 0;
     bool composing_ = false, first_composition_ = true;

@@ -77,11 +77,11 @@ FrameTiming CompositorService::wait_frame() {
     Lock lock(mutex_);
     const auto running = [&] { return session_ && !ending_ && !stop_; };
     const std::uint64_t id = next_frame_id_++;
-    const DurationNs period = pacing_.grid().period;
     changed_.wait(lock, [&] { return !running() || last_begun_ + 1 >= id; });
     changed_.wait(lock, [&] { return !running() || (queue_.empty() && (!options_.lockstep || !composing_)); });
     Promise promise;
     TimeNs start = 0;
+    DurationNs period = pacing_.grid().period;
     if (options_.lockstep || !running()) {
         promise.display_time = std::max(last_promised_, options_.lockstep ? TimeNs(0) : clock_.now()) + period;
     } else {
@@ -89,6 +89,7 @@ FrameTiming CompositorService::wait_frame() {
         promise.refresh = prediction.refresh;
         promise.display_time = prediction.display_time;
         start = prediction.start_time;
+        period = prediction.period;
     }
     last_promised_ = promise.display_time;
     promises_[id] = promise;

@@ -69,6 +69,8 @@ struct Headset {
     PoseSource* head = nullptr;         // never null
     EyeSource* eye_tracker = nullptr;   // never null; may say that it is absent
     std::array<ControllerSource*, 2> controllers{};   // left, right; null when there is none
+    PresenceSource* presence = nullptr; // null: the headset cannot tell whether somebody wears it
+    glm::vec2 play_area_m{0};           // free floor about the world's origin, along x and z, metres; 0 when nobody has measured the room
     std::shared_ptr<void> owner;        // keeps the driver alive
 };
 

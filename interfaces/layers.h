@@ -55,6 +55,7 @@ struct Layer {
     EyeVisibility visibility = EyeVisibility::both;
     bool blend_texture_source_alpha = false;   // else the layer is opaque
     bool unpremultiplied_alpha = false;        // colours are not yet multiplied by alpha
+    bool replaces_previous = false;            // where it shows something, the layer before it does not: the inset of a foveated view
     LayerLuminance luminance;
     bool head_locked = false;                  // the layer's space moves with the head: `anchor` is head_from_space, else world_from_space
     Pose anchor;

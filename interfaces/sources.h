@@ -41,6 +41,13 @@ public:
     virtual std::string description() const = 0;  // for status: what it is, or why it is absent
 };
 
+// Whether somebody wears the headset, as its proximity sensor says.
+class PresenceSource {
+public:
+    virtual ~PresenceSource() = default;
+    virtual bool user_present() = 0;
+};
+
 // State of a simulated or real hand controller. Superset of what common interaction profiles carry.
 struct ControllerState {
     PoseState grip, aim;              // world

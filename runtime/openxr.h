@@ -9,3 +9,5 @@
 #endif
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
+
+#include "runtime/openxr_1_1.h"

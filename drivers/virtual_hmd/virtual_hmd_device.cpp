@@ -101,6 +101,8 @@ Headset headset_of(const std::shared_ptr<VirtualHmd>& hmd, const DriverOptions& 
     }
     headset.head = &hmd->head();
     headset.eye_tracker = &hmd->eye_tracker();
+    headset.presence = &hmd->presence();
+    headset.play_area_m = {4, 4};  // choice: a room of 4 m x 4 m, with the world's origin in its middle
     headset.owner = hmd;
     return headset;
 }

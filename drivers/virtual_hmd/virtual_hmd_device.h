@@ -49,6 +49,12 @@ private:
 };
 
 // Everything behind the Headset; Headset::owner points to it.
+// The virtual wearer never takes the headset off.
+class VirtualPresence final : public PresenceSource {
+public:
+    bool user_present() override { return true; }
+};
+
 class VirtualHmd {
 public:
     VirtualHmd(const DriverOptions& options, Script script);
@@ -59,6 +65,7 @@ public:
     const VirtualEyes& eyes() const { return eyes_; }
     VirtualHead& head() { return head_; }
     VirtualEyeTracker& eye_tracker() { return eye_tracker_; }
+    PresenceSource& presence() { return presence_; }
     VirtualController& controller(int hand) { return hand == 0 ? left_ : right_; }
 
 private:
@@ -66,6 +73,7 @@ private:
     VirtualHead head_;
     VirtualEyes eyes_;
     VirtualEyeTracker eye_tracker_;
+    VirtualPresence presence_;
     VirtualController left_, right_;
 };
 

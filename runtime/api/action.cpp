@@ -3,6 +3,7 @@
 
 #include "runtime/api/call.h"
 #include "runtime/api/functions.h"
+#include "runtime/api/paths.h"
 #include "runtime/api/verify.h"
 #include "runtime/objects/action_input.h"
 #include "runtime/objects/session.h"
@@ -14,20 +15,6 @@ namespace entoptic::runtime::api {
 namespace {
 
 constexpr DurationNs shortest_vibration = 20'000'000;  // for XR_MIN_HAPTIC_DURATION
-
-bool eye_gaze_allowed(UserPath user, Instance& instance) {
-    return user != UserPath::eyes || instance.enabled(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
-}
-
-// XR_ERROR_PATH_INVALID, XR_ERROR_PATH_UNSUPPORTED.
-Outcome to_user_path(Instance& instance, XrPath path, UserPath& user) {
-    std::string text;
-    ENTOPTIC_XR_TRY(instance.paths().to_string(path, text));
-    const auto parsed = parse_user_path(text);
-    if (!parsed || !eye_gaze_allowed(*parsed, instance)) return error(XR_ERROR_PATH_UNSUPPORTED, "{} is not a top level user path", text);
-    user = *parsed;
-    return XR_SUCCESS;
-}
 
 Outcome check_action_type(XrActionType type) {
     switch (type) {
@@ -62,7 +49,7 @@ Outcome read_binding(Instance& instance, const Profile& profile, const XrActionS
     if (&action->instance() != &instance) return invalid("action \"{}\" belongs to another instance", action->name);
     ENTOPTIC_XR_TRY(instance.paths().to_string(given.binding, binding.path));
     const auto split = split_binding_path(binding.path);
-    if (!split || !profile.find(split->user, split->below, kind_of(action->type))) {
+    if (!split || !profile.find(split->user, split->below, kind_of(action->type), instance.features())) {
         return error(XR_ERROR_PATH_UNSUPPORTED, "{} has no path {}", profile.path, binding.path);
     }
     if (action->set->attached()) {
@@ -73,13 +60,55 @@ Outcome read_binding(Instance& instance, const Profile& profile, const XrActionS
     return XR_SUCCESS;
 }
 
-Outcome find_interaction_profile(Instance& instance, XrPath path, const Profile*& profile) {
-    std::string text;
-    ENTOPTIC_XR_TRY(instance.paths().to_string(path, text));
-    profile = find_profile(text);
-    const bool allowed = profile && (!is_eye_gaze_profile(*profile) || instance.enabled(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
-    return allowed ? Outcome()
-                   : error(XR_ERROR_PATH_UNSUPPORTED, "{} is not an interaction profile of OpenXR 1.0 or an enabled extension", text);
+// XR_ERROR_VALIDATION_FAILURE unless the ranges are those of XrInteractionProfileDpadBindingEXT. Written so that NaN fails.
+Outcome check_dpad(const XrInteractionProfileDpadBindingEXT& given) {
+    const auto force = [](float value) { return value > 0 && value <= 1; };
+    if (!force(given.forceThreshold) || !force(given.forceThresholdReleased) || given.forceThresholdReleased > given.forceThreshold) {
+        return invalid("forceThreshold {} and forceThresholdReleased {} must lie in (0, 1], the second not above the first",
+                       given.forceThreshold, given.forceThresholdReleased);
+    }
+    if (!(given.centerRegion > 0 && given.centerRegion < 1)) return invalid("centerRegion {} must lie in (0, 1)", given.centerRegion);
+    constexpr float half_turn = 3.14159265f;
+    if (!(given.wedgeAngle >= 0 && given.wedgeAngle < half_turn)) return invalid("wedgeAngle {} must lie in [0, pi)", given.wedgeAngle);
+    return XR_SUCCESS;
+}
+
+Outcome read_dpad(Instance& instance, const Profile& profile, const XrInteractionProfileDpadBindingEXT& given,
+                  std::vector<SuggestedDpad>& dpads) {
+    SuggestedDpad dpad;
+    ENTOPTIC_XR_TRY(instance.paths().to_string(given.binding, dpad.path));
+    const auto split = split_binding_path(dpad.path);
+    const std::string up = split ? std::string(split->below) + "/dpad_up" : std::string();
+    if (!split || !profile.find(split->user, up, ComponentKind::boolean, instance.features())) {
+        return error(XR_ERROR_PATH_UNSUPPORTED, "{} has no stick or pad {} that could be a direction pad", profile.path, dpad.path);
+    }
+    std::shared_ptr<ActionSet> set;
+    ENTOPTIC_XR_TRY(find(given.actionSet, set));
+    ENTOPTIC_XR_TRY(check_dpad(given));
+    for (const SuggestedDpad& other : dpads) {
+        if (other.path == dpad.path && other.set.lock() == set) return invalid("{} is modified twice for one action set", dpad.path);
+    }
+    dpad.set = set;
+    dpad.settings = {given.forceThreshold, given.forceThresholdReleased, given.centerRegion, given.wedgeAngle, given.isSticky == XR_TRUE};
+    dpads.push_back(std::move(dpad));
+    return XR_SUCCESS;
+}
+
+Outcome read_modifications(Instance& instance, const Profile& profile, const void* chain, std::vector<SuggestedDpad>& dpads) {
+    if (!instance.enabled(XR_KHR_BINDING_MODIFICATION_EXTENSION_NAME)) return XR_SUCCESS;
+    const auto* given = chained<XrBindingModificationsKHR>(chain, XR_TYPE_BINDING_MODIFICATIONS_KHR);
+    if (!given || given->bindingModificationCount == 0) return XR_SUCCESS;
+    ENTOPTIC_XR_TRY(require_pointer(given->bindingModifications, "bindingModifications"));
+    for (std::uint32_t i = 0; i < given->bindingModificationCount; ++i) {
+        const auto* modification = given->bindingModifications[i];
+        ENTOPTIC_XR_TRY(require_pointer(modification, "a binding modification"));
+        if (modification->type != XR_TYPE_INTERACTION_PROFILE_DPAD_BINDING_EXT || !instance.has(feature_dpad)) {
+            return invalid("binding modification {} is of type {}, which no enabled extension has", i,
+                           static_cast<int>(modification->type));
+        }
+        ENTOPTIC_XR_TRY(read_dpad(instance, profile, *reinterpret_cast<const XrInteractionProfileDpadBindingEXT*>(modification), dpads));
+    }
+    return XR_SUCCESS;
 }
 
 // What the functions on one action of a session have in common.
@@ -229,13 +258,14 @@ XrResult XRAPI_CALL suggest_interaction_profile_bindings(XrInstance handle, cons
         ENTOPTIC_XR_TRY(require_pointer(info->suggestedBindings, "suggestedBindings->suggestedBindings"));
         const Profile* profile = nullptr;
         ENTOPTIC_XR_TRY(find_interaction_profile(*instance, info->interactionProfile, profile));
-        std::vector<SuggestedBinding> bindings;
+        ProfileSuggestions suggestions;
         for (std::uint32_t i = 0; i < info->countSuggestedBindings; ++i) {
             SuggestedBinding binding;
             ENTOPTIC_XR_TRY(read_binding(*instance, *profile, info->suggestedBindings[i], binding));
-            bindings.push_back(std::move(binding));
+            suggestions.bindings.push_back(std::move(binding));
         }
-        instance->suggestions().set(std::string(profile->path), std::move(bindings));
+        ENTOPTIC_XR_TRY(read_modifications(*instance, *profile, info->next, suggestions.dpads));
+        instance->suggestions().set(std::string(profile->path), std::move(suggestions));
         return XR_SUCCESS;
     });
 }

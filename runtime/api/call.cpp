@@ -1,9 +1,8 @@
 #include "runtime/api/call.h"
 
 #include "base/log.h"
+#include "runtime/api/structure_names.h"
 #include "runtime/objects/instance.h"
-
-#include <openxr/openxr_reflection.h>
 
 namespace entoptic::runtime::api {
 
@@ -43,14 +42,6 @@ const char* advice(XrResult result) {
 }
 
 }  // namespace
-
-const char* result_name(XrResult result) {
-#define ENTOPTIC_RESULT_NAME(name, value) \
-    case name:                            \
-        return #name;
-    switch (result) { XR_LIST_ENUM_XrResult(ENTOPTIC_RESULT_NAME) default : return nullptr; }
-#undef ENTOPTIC_RESULT_NAME
-}
 
 void report_error(const char* function, std::uint64_t handle, const Outcome& outcome) noexcept {
     // The loader and engines probe xrGetInstanceProcAddr for hundreds of names: that is a question, not a mistake.

@@ -9,9 +9,6 @@
 
 namespace entoptic::runtime::api {
 
-// The name of a result: "XR_ERROR_HANDLE_INVALID"; null for an unknown one.
-const char* result_name(XrResult result);
-
 void report_error(const char* function, std::uint64_t handle, const Outcome& outcome) noexcept;
 
 template <class Handle, class Body> XrResult call(const char* function, Handle handle, Body&& body) noexcept {

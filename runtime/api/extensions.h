@@ -12,6 +12,7 @@ namespace entoptic::runtime::api {
 struct Extension {
     const char* name;
     std::uint32_t version;
+    const char* needs = nullptr;  // another extension that must be enabled with it
 };
 
 std::span<const Extension> extensions();

@@ -94,6 +94,32 @@ XrResult XRAPI_CALL session_begin_debug_utils_label_region(XrSession session, co
 XrResult XRAPI_CALL session_end_debug_utils_label_region(XrSession session);
 XrResult XRAPI_CALL session_insert_debug_utils_label(XrSession session, const XrDebugUtilsLabelEXT* labelInfo);
 
+// OpenXR 1.1, XR_KHR_locate_spaces
+XrResult XRAPI_CALL locate_spaces(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations);
+
+// XR_EXT_conformance_automation
+XrResult XRAPI_CALL set_input_device_active(XrSession session, XrPath interactionProfile, XrPath topLevelPath, XrBool32 isActive);
+XrResult XRAPI_CALL set_input_device_state_bool(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrBool32 state);
+XrResult XRAPI_CALL set_input_device_state_float(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, float state);
+XrResult XRAPI_CALL set_input_device_state_vector2f(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrVector2f state);
+XrResult XRAPI_CALL set_input_device_location(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrSpace space, XrPosef pose);
+
+// XR_EXT_hand_tracking
+XrResult XRAPI_CALL create_hand_tracker(XrSession session, const XrHandTrackerCreateInfoEXT* createInfo, XrHandTrackerEXT* handTracker);
+XrResult XRAPI_CALL destroy_hand_tracker(XrHandTrackerEXT handTracker);
+XrResult XRAPI_CALL locate_hand_joints(XrHandTrackerEXT handTracker, const XrHandJointsLocateInfoEXT* locateInfo,
+                                       XrHandJointLocationsEXT* locations);
+
+// XR_FB_display_refresh_rate
+XrResult XRAPI_CALL enumerate_display_refresh_rates(XrSession session, uint32_t displayRefreshRateCapacityInput,
+                                                    uint32_t* displayRefreshRateCountOutput, float* displayRefreshRates);
+XrResult XRAPI_CALL get_display_refresh_rate(XrSession session, float* displayRefreshRate);
+XrResult XRAPI_CALL request_display_refresh_rate(XrSession session, float displayRefreshRate);
+
+// XR_KHR_visibility_mask
+XrResult XRAPI_CALL get_visibility_mask(XrSession session, XrViewConfigurationType viewConfigurationType, uint32_t viewIndex,
+                                        XrVisibilityMaskTypeKHR visibilityMaskType, XrVisibilityMaskKHR* visibilityMask);
+
 // XR_KHR_convert_timespec_time
 XrResult XRAPI_CALL convert_timespec_time_to_time(XrInstance instance, const struct timespec* timespecTime, XrTime* time);
 XrResult XRAPI_CALL convert_time_to_timespec_time(XrInstance instance, XrTime time, struct timespec* timespecTime);

@@ -5,10 +5,10 @@
 #include "runtime/api/call.h"
 #include "runtime/api/extensions.h"
 #include "runtime/api/functions.h"
+#include "runtime/api/limits.h"
+#include "runtime/api/structure_names.h"
 #include "runtime/api/verify.h"
 #include "runtime/runtime.h"
-
-#include <openxr/openxr_reflection.h>
 
 #include <algorithm>
 #include <atomic>
@@ -25,9 +25,19 @@ bool offered(std::string_view name) {
 }
 
 Outcome check_api_version(XrVersion version) {
-    if (XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) == 0) return XR_SUCCESS;
-    return error(XR_ERROR_API_VERSION_UNSUPPORTED, "the application asks for OpenXR {}.{}.{}; this runtime is 1.0",
+    if (XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1) return XR_SUCCESS;
+    return error(XR_ERROR_API_VERSION_UNSUPPORTED, "the application asks for OpenXR {}.{}.{}; this runtime has 1.0 and 1.1",
                  XR_VERSION_MAJOR(version), XR_VERSION_MINOR(version), XR_VERSION_PATCH(version));
+}
+
+// XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED.
+Outcome check_dependencies(const std::vector<std::string>& extensions) {
+    const auto has = [&](std::string_view name) { return std::find(extensions.begin(), extensions.end(), name) != extensions.end(); };
+    for (const api::Extension& extension : api::extensions()) {
+        if (!extension.needs || !has(extension.name) || has(extension.needs)) continue;
+        return error(XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED, "{} needs {}; enable both", extension.name, extension.needs);
+    }
+    return XR_SUCCESS;
 }
 
 Outcome read_extensions(const XrInstanceCreateInfo& info, std::vector<std::string>& extensions) {
@@ -39,7 +49,7 @@ Outcome read_extensions(const XrInstanceCreateInfo& info, std::vector<std::strin
         if (!offered(name)) return error(XR_ERROR_EXTENSION_NOT_PRESENT, "this runtime has no extension \"{}\"", name);
         if (std::find(extensions.begin(), extensions.end(), name) == extensions.end()) extensions.push_back(name);
     }
-    return XR_SUCCESS;
+    return check_dependencies(extensions);
 }
 
 Outcome read_application(const XrInstanceCreateInfo& info, ApplicationIdentity& application) {
@@ -92,11 +102,11 @@ XrResult negotiate(const XrNegotiateLoaderInfo* info, XrNegotiateRuntimeRequest*
     }
     const bool same_interface =
         info->minInterfaceVersion <= XR_CURRENT_LOADER_RUNTIME_VERSION && info->maxInterfaceVersion >= XR_CURRENT_LOADER_RUNTIME_VERSION;
-    const bool same_api = info->minApiVersion <= XR_CURRENT_API_VERSION && XR_VERSION_MAJOR(info->maxApiVersion) >= 1;
+    const bool same_api = info->minApiVersion <= api::runtime_api_version && XR_VERSION_MAJOR(info->maxApiVersion) >= 1;
     if (!same_interface || !same_api || !factory) return XR_ERROR_INITIALIZATION_FAILED;
     host_factory = factory;
     request->runtimeInterfaceVersion = XR_CURRENT_LOADER_RUNTIME_VERSION;
-    request->runtimeApiVersion = XR_CURRENT_API_VERSION;
+    request->runtimeApiVersion = api::runtime_api_version;
     request->getInstanceProcAddr = get_instance_proc_addr;
     return XR_SUCCESS;
 }
@@ -196,12 +206,8 @@ XrResult XRAPI_CALL structure_type_to_string(XrInstance handle, XrStructureType 
         std::shared_ptr<Instance> instance;
         ENTOPTIC_XR_TRY(find(handle, instance));
         ENTOPTIC_XR_TRY(require_pointer(buffer, "buffer"));
-        std::string text = fmt::format("XR_UNKNOWN_STRUCTURE_TYPE_{}", static_cast<int>(value));
-#define ENTOPTIC_STRUCTURE_NAME(name, number) \
-    if (value == name) text = #name;
-        XR_LIST_ENUM_XrStructureType(ENTOPTIC_STRUCTURE_NAME)
-#undef ENTOPTIC_STRUCTURE_NAME
-            if (value == XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX) text = "XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX";
+        const char* name = structure_name(value);
+        const std::string text = name ? std::string(name) : fmt::format("XR_UNKNOWN_STRUCTURE_TYPE_{}", static_cast<int>(value));
         std::strncpy(buffer, text.c_str(), XR_MAX_STRUCTURE_NAME_SIZE - 1);
         buffer[XR_MAX_STRUCTURE_NAME_SIZE - 1] = 0;
         return XR_SUCCESS;

@@ -5,6 +5,7 @@
 #include "runtime/objects/session.h"
 #include "runtime/objects/space.h"
 #include "runtime/objects/swapchain.h"
+#include "runtime/objects/views.h"
 
 #include <cmath>
 
@@ -59,8 +60,7 @@ Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& giv
     const bool depth = (info.usageFlags & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
     if (depth && holds == Holds::colour) return error(XR_ERROR_LAYER_INVALID, "a depth swapchain cannot be shown as a layer");
     if (!depth && holds == Holds::depth) {
-        return error(XR_ERROR_LAYER_INVALID,
-                     "a layer's depth needs a swapchain made with XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT");
+        return error(XR_ERROR_LAYER_INVALID, "a layer's depth needs a swapchain made with XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT");
     }
     ENTOPTIC_XR_TRY(swapchain->take_for_layer(image.image_index));
     image.swapchain = swapchain->id();
@@ -118,12 +118,11 @@ Outcome resolve_depth(const Context& context, const void* chain, LayerDepth& dep
     return XR_SUCCESS;
 }
 
-Outcome resolve_projection(const Context& context, const XrCompositionLayerProjection& given, Layer& layer) {
+// Both eyes' views from `first_view` on.
+Outcome resolve_projection(const Context& context, const XrCompositionLayerProjection& given, std::size_t first_view, Layer& layer) {
     layer.kind = LayerKind::projection;
-    if (given.viewCount != eye_count) return invalid("the projection layer has {} views; it must have {}", given.viewCount, eye_count);
-    ENTOPTIC_XR_TRY(require_pointer(given.views, "the projection layer's views"));
     for (std::size_t eye = 0; eye < eye_count; ++eye) {
-        const XrCompositionLayerProjectionView& view = given.views[eye];
+        const XrCompositionLayerProjectionView& view = given.views[first_view + eye];
         ENTOPTIC_XR_TRY(require(&view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, "a projection view"));
         ENTOPTIC_XR_TRY(check_pose(view.pose));
         ENTOPTIC_XR_TRY(resolve_sub_image(context, view.subImage, Holds::colour, layer.views[eye].image));
@@ -161,20 +160,50 @@ Outcome resolve_quad(const Context& context, const XrCompositionLayerQuad& given
     return XR_SUCCESS;
 }
 
-Outcome resolve_layer(const Context& context, const XrCompositionLayerBaseHeader* given, Layer& layer, bool& shown) {
-    if (!given) return error(XR_ERROR_LAYER_INVALID, "a layer is null");
-    const bool projection = given->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION, quad = given->type == XR_TYPE_COMPOSITION_LAYER_QUAD;
-    if (!projection && !quad) {
-        return error(XR_ERROR_LAYER_INVALID, "layer type {} is not offered; submit projection and quad layers",
-                     static_cast<int>(given->type));
+Outcome check_views(const Context& context, const XrCompositionLayerProjection& given) {
+    const std::size_t wanted = view_count(context.session->view_configuration());
+    if (given.viewCount != wanted) {
+        return invalid("the projection layer has {} views; the session's view configuration has {}", given.viewCount, wanted);
     }
-    if ((given->layerFlags & ~known_layer_flags) != 0) return invalid("layerFlags has unknown bits ({:#x})", given->layerFlags);
-    layer.blend_texture_source_alpha = (given->layerFlags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0;
-    layer.unpremultiplied_alpha = (given->layerFlags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0;
-    ENTOPTIC_XR_TRY(resolve_luminance(context, given->next, layer.luminance));
-    ENTOPTIC_XR_TRY(resolve_space(context, given->space, layer, shown));
-    return projection ? resolve_projection(context, *reinterpret_cast<const XrCompositionLayerProjection*>(given), layer)
-                      : resolve_quad(context, *reinterpret_cast<const XrCompositionLayerQuad*>(given), layer);
+    return require_pointer(given.views, "the projection layer's views");
+}
+
+// What all layers have.
+Outcome resolve_base(const Context& context, const XrCompositionLayerBaseHeader& given, Layer& layer, bool& shown) {
+    if ((given.layerFlags & ~known_layer_flags) != 0) return invalid("layerFlags has unknown bits ({:#x})", given.layerFlags);
+    layer.blend_texture_source_alpha = (given.layerFlags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0;
+    layer.unpremultiplied_alpha = (given.layerFlags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0;
+    ENTOPTIC_XR_TRY(resolve_luminance(context, given.next, layer.luminance));
+    return resolve_space(context, given.space, layer, shown);
+}
+
+// Appends what the compositor shows of one layer of the application: nothing, itself, or its parts.
+Outcome resolve_layer(const Context& context, const XrCompositionLayerBaseHeader* given, std::vector<Layer>& layers) {
+    if (!given) return error(XR_ERROR_LAYER_INVALID, "a layer is null");
+    const auto* projection = reinterpret_cast<const XrCompositionLayerProjection*>(given);
+    Layer layer;
+    bool shown = false;
+    switch (given->type) {
+        case XR_TYPE_COMPOSITION_LAYER_PROJECTION:
+            ENTOPTIC_XR_TRY(check_views(context, *projection));
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            ENTOPTIC_XR_TRY(resolve_projection(context, *projection, 0, layer));
+            break;
+        case XR_TYPE_COMPOSITION_LAYER_QUAD:
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            ENTOPTIC_XR_TRY(resolve_quad(context, *reinterpret_cast<const XrCompositionLayerQuad*>(given), layer));
+            break;
+        default:
+            return error(XR_ERROR_LAYER_INVALID, "layer type {} is not offered; submit projection and quad layers",
+                         static_cast<int>(given->type));
+    }
+    if (shown) layers.push_back(layer);
+    if (given->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION || projection->viewCount == eye_count) return XR_SUCCESS;
+    Layer inset = layer;
+    inset.replaces_previous = true;
+    ENTOPTIC_XR_TRY(resolve_projection(context, *projection, eye_count, inset));
+    if (shown) layers.push_back(inset);
+    return XR_SUCCESS;
 }
 
 }  // namespace
@@ -185,13 +214,10 @@ Outcome resolve_layers(const std::shared_ptr<Session>& session, const XrFrameEnd
     }
     if (info.layerCount > 0) ENTOPTIC_XR_TRY(require_pointer(info.layers, "frameEndInfo->layers"));
     const Context context{session, info.displayTime, session->host().default_luminance()};
-    for (std::uint32_t i = 0; i < info.layerCount; ++i) {
-        Layer layer;
-        bool shown = false;
-        ENTOPTIC_XR_TRY(resolve_layer(context, info.layers[i], layer, shown));
-        if (shown) layers.push_back(layer);
-    }
-    return XR_SUCCESS;
+    for (std::uint32_t i = 0; i < info.layerCount; ++i) { ENTOPTIC_XR_TRY(resolve_layer(context, info.layers[i], layers)); }
+    if (layers.size() <= max_layers) return XR_SUCCESS;
+    return error(XR_ERROR_LAYER_LIMIT_EXCEEDED, "the layers have {} parts, more than the {} that can be composed; insets count as layers",
+                 layers.size(), max_layers);
 }
 
 }  // namespace entoptic::runtime::api

@@ -16,6 +16,7 @@ struct Entry {
     std::string_view name;
     const char* extension;  // null: core
     PFN_xrVoidFunction function;
+    Features needs = 0;
 };
 
 // The template argument makes the compiler compare the signature with the specification's.
@@ -23,7 +24,16 @@ template <class Function> Entry entry(std::string_view name, const char* extensi
     return {name, extension, reinterpret_cast<PFN_xrVoidFunction>(function)};
 }
 
+// A function of OpenXR 1.1, for applications that asked for it.
+template <class Function> Entry core_1_1(std::string_view name, Function function) {
+    return {name, nullptr, reinterpret_cast<PFN_xrVoidFunction>(function), feature_1_1};
+}
+
 constexpr const char* debug_utils = XR_EXT_DEBUG_UTILS_EXTENSION_NAME;
+constexpr const char* automation = XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME;
+constexpr const char* hand_tracking = XR_EXT_HAND_TRACKING_EXTENSION_NAME;
+constexpr const char* refresh_rate = XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME;
+constexpr const char* visibility_mask = XR_KHR_VISIBILITY_MASK_EXTENSION_NAME;
 constexpr const char* timespec_time = XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME;
 
 const Entry table[] = {
@@ -84,6 +94,20 @@ const Entry table[] = {
     entry<PFN_xrGetInputSourceLocalizedName>("xrGetInputSourceLocalizedName", nullptr, api::get_input_source_localized_name),
     entry<PFN_xrApplyHapticFeedback>("xrApplyHapticFeedback", nullptr, api::apply_haptic_feedback),
     entry<PFN_xrStopHapticFeedback>("xrStopHapticFeedback", nullptr, api::stop_haptic_feedback),
+    core_1_1<PFN_xrLocateSpaces>("xrLocateSpaces", api::locate_spaces),
+    entry<PFN_xrLocateSpaces>("xrLocateSpacesKHR", XR_KHR_LOCATE_SPACES_EXTENSION_NAME, api::locate_spaces),
+    entry<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT", automation, api::set_input_device_active),
+    entry<PFN_xrSetInputDeviceStateBoolEXT>("xrSetInputDeviceStateBoolEXT", automation, api::set_input_device_state_bool),
+    entry<PFN_xrSetInputDeviceStateFloatEXT>("xrSetInputDeviceStateFloatEXT", automation, api::set_input_device_state_float),
+    entry<PFN_xrSetInputDeviceStateVector2fEXT>("xrSetInputDeviceStateVector2fEXT", automation, api::set_input_device_state_vector2f),
+    entry<PFN_xrSetInputDeviceLocationEXT>("xrSetInputDeviceLocationEXT", automation, api::set_input_device_location),
+    entry<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT", hand_tracking, api::create_hand_tracker),
+    entry<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT", hand_tracking, api::destroy_hand_tracker),
+    entry<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT", hand_tracking, api::locate_hand_joints),
+    entry<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB", refresh_rate, api::enumerate_display_refresh_rates),
+    entry<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB", refresh_rate, api::get_display_refresh_rate),
+    entry<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB", refresh_rate, api::request_display_refresh_rate),
+    entry<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR", visibility_mask, api::get_visibility_mask),
     entry<PFN_xrSetDebugUtilsObjectNameEXT>("xrSetDebugUtilsObjectNameEXT", debug_utils, api::set_debug_utils_object_name),
     entry<PFN_xrCreateDebugUtilsMessengerEXT>("xrCreateDebugUtilsMessengerEXT", debug_utils, api::create_debug_utils_messenger),
     entry<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT", debug_utils, api::destroy_debug_utils_messenger),
@@ -102,7 +126,9 @@ bool without_instance(std::string_view name) {
            name == "xrCreateInstance";
 }
 
-bool offered(const Entry& entry, const Instance& instance) { return !entry.extension || instance.enabled(entry.extension); }
+bool offered(const Entry& entry, const Instance& instance) {
+    return instance.has(entry.needs) && (!entry.extension || instance.enabled(entry.extension));
+}
 
 Outcome look_up(XrInstance handle, std::string_view name, PFN_xrVoidFunction* function) {
     std::shared_ptr<Instance> instance;
@@ -123,7 +149,8 @@ Outcome look_up(XrInstance handle, std::string_view name, PFN_xrVoidFunction* fu
             return XR_SUCCESS;
         }
     }
-    return error(XR_ERROR_FUNCTION_UNSUPPORTED, "{} is not a function of OpenXR 1.0 or of an enabled extension", name);
+    return error(XR_ERROR_FUNCTION_UNSUPPORTED, "{} is not a function of the application's version of OpenXR or of an enabled extension",
+                 name);
 }
 
 }  // namespace

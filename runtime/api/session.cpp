@@ -38,7 +38,8 @@ XrResult XRAPI_CALL create_session(XrInstance handle, const XrSessionCreateInfo*
         if (info->createFlags != 0) return invalid("createInfo->createFlags must be 0");
         ENTOPTIC_XR_TRY(check_system(info->systemId));
         std::unique_ptr<GraphicsDevice> graphics;
-        ENTOPTIC_XR_TRY(graphics::make_graphics_device(*instance, info->next, graphics));
+        const bool headless = instance->enabled(XR_MND_HEADLESS_EXTENSION_NAME) && !graphics::has_graphics_binding(info->next);
+        if (!headless) ENTOPTIC_XR_TRY(graphics::make_graphics_device(*instance, info->next, graphics));
         SessionClaim claim(*instance);
         if (!claim.held()) return error(XR_ERROR_LIMIT_REACHED, "this instance has a session already; destroy it first");
         auto session = std::make_shared<Session>(instance, std::move(graphics));
@@ -58,8 +59,8 @@ XrResult XRAPI_CALL begin_session(XrSession handle, const XrSessionBeginInfo* in
         std::shared_ptr<Session> session;
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require(info, XR_TYPE_SESSION_BEGIN_INFO, "beginInfo"));
-        ENTOPTIC_XR_TRY(check_view_configuration(info->primaryViewConfigurationType));
-        return session->begin();
+        ENTOPTIC_XR_TRY(check_view_configuration(session->instance(), info->primaryViewConfigurationType));
+        return session->begin(info->primaryViewConfigurationType);
     });
 }
 

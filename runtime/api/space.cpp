@@ -5,18 +5,29 @@
 #include "runtime/api/functions.h"
 #include "runtime/api/verify.h"
 #include "runtime/objects/session.h"
+#include "runtime/objects/views.h"
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <vector>
 
 namespace entoptic::runtime::api {
 
 namespace {
 
-constexpr std::array reference_spaces{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE};
+constexpr std::array reference_spaces{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE,
+                                      XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR};
 
-bool offered(XrReferenceSpaceType type) {
-    return std::find(reference_spaces.begin(), reference_spaces.end(), type) != reference_spaces.end();
+// LOCAL_FLOOR, the last, came with 1.1.
+std::span<const XrReferenceSpaceType> offered_spaces(Instance& instance) {
+    const bool floor = instance.has(feature_1_1 | feature_local_floor);
+    return std::span(reference_spaces).first(reference_spaces.size() - (floor ? 0u : 1u));
+}
+
+bool offered(Instance& instance, XrReferenceSpaceType type) {
+    const auto spaces = offered_spaces(instance);
+    return std::find(spaces.begin(), spaces.end(), type) != spaces.end();
 }
 
 Outcome space_unsupported(XrReferenceSpaceType type) {
@@ -33,7 +44,8 @@ XrSpaceLocationFlags location_flags(const PoseState& state) {
     return flags;
 }
 
-void write_velocity(const PoseState& state, XrSpaceVelocity& velocity) {
+// XrSpaceVelocity or XrSpaceVelocityData.
+template <class Velocity> void write_velocity(const PoseState& state, Velocity& velocity) {
     velocity.velocityFlags = 0;
     velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
     if (!state.velocity_valid) return;
@@ -50,6 +62,23 @@ Pose valid_parts(const PoseState& state) {
     if (!state.orientation_valid) pose.orientation = {1, 0, 0, 0};
     if (!state.position_valid) pose.position = glm::vec3(0);
     return pose;
+}
+
+Outcome read_spaces(const Session& session, const XrSpacesLocateInfo& info, std::vector<std::shared_ptr<Space>>& spaces) {
+    if (info.spaceCount == 0) return invalid("spaceCount is 0");
+    ENTOPTIC_XR_TRY(require_pointer(info.spaces, "locateInfo->spaces"));
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) {
+        std::shared_ptr<Space> space;
+        ENTOPTIC_XR_TRY(find(info.spaces[i], space));
+        if (space->session().get() != &session) return invalid("spaces[{}] belongs to another session", i);
+        spaces.push_back(std::move(space));
+    }
+    return XR_SUCCESS;
+}
+
+Outcome check_count(std::uint32_t count, const void* array, std::size_t wanted, const char* what) {
+    if (count != wanted) return invalid("there is room for {} {}; it must be exactly for the {} spaces", count, what, wanted);
+    return require_pointer(array, what);
 }
 
 Outcome check_action_space(const Session& session, const XrActionSpaceCreateInfo& info, std::shared_ptr<Action>& action,
@@ -73,7 +102,7 @@ XrResult XRAPI_CALL enumerate_reference_spaces(XrSession handle, uint32_t capaci
     return call("xrEnumerateReferenceSpaces", handle, [&]() -> Outcome {
         std::shared_ptr<Session> session;
         ENTOPTIC_XR_TRY(find(handle, session));
-        return two_call_values(capacity, count, spaces, reference_spaces);
+        return two_call_values(capacity, count, spaces, offered_spaces(session->instance()));
     });
 }
 
@@ -83,7 +112,7 @@ XrResult XRAPI_CALL create_reference_space(XrSession handle, const XrReferenceSp
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require(info, XR_TYPE_REFERENCE_SPACE_CREATE_INFO, "createInfo"));
         ENTOPTIC_XR_TRY(require_pointer(space, "space"));
-        if (!offered(info->referenceSpaceType)) return space_unsupported(info->referenceSpaceType);
+        if (!offered(session->instance(), info->referenceSpaceType)) return space_unsupported(info->referenceSpaceType);
         ENTOPTIC_XR_TRY(check_pose(info->poseInReferenceSpace));
         return publish(std::make_shared<Space>(session, info->referenceSpaceType, to_pose(info->poseInReferenceSpace)),
                        handle_value(handle), space);
@@ -96,9 +125,11 @@ XrResult XRAPI_CALL get_reference_space_bounds_rect(XrSession handle, XrReferenc
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require_pointer(bounds, "bounds"));
         if (type == XR_REFERENCE_SPACE_TYPE_MAX_ENUM) return invalid("XR_REFERENCE_SPACE_TYPE_MAX_ENUM is not a reference space");
-        if (!offered(type)) return space_unsupported(type);
-        *bounds = {0, 0};
-        return XR_SPACE_BOUNDS_UNAVAILABLE;  // nobody has measured the room
+        if (!offered(session->instance(), type)) return space_unsupported(type);
+        const glm::vec2 area = session->host().headset().play_area_m;
+        const bool known = type == XR_REFERENCE_SPACE_TYPE_STAGE && area.x > 0 && area.y > 0;
+        *bounds = known ? XrExtent2Df{area.x, area.y} : XrExtent2Df{0, 0};
+        return known ? XR_SUCCESS : XR_SPACE_BOUNDS_UNAVAILABLE;
     });
 }
 
@@ -139,6 +170,30 @@ XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base_handle, XrTime tim
     });
 }
 
+XrResult XRAPI_CALL locate_spaces(XrSession handle, const XrSpacesLocateInfo* info, XrSpaceLocations* locations) {
+    return call("xrLocateSpaces", handle, [&]() -> Outcome {
+        std::shared_ptr<Session> session;
+        std::vector<std::shared_ptr<Space>> spaces;
+        std::shared_ptr<Space> base;
+        ENTOPTIC_XR_TRY(find(handle, session));
+        ENTOPTIC_XR_TRY(require(info, XR_TYPE_SPACES_LOCATE_INFO, "locateInfo"));
+        ENTOPTIC_XR_TRY(require(locations, XR_TYPE_SPACE_LOCATIONS, "spaceLocations"));
+        ENTOPTIC_XR_TRY(find(info->baseSpace, base));
+        if (base->session() != session) return invalid("the base space belongs to another session");
+        ENTOPTIC_XR_TRY(read_spaces(*session, *info, spaces));
+        ENTOPTIC_XR_TRY(check_time(info->time));
+        auto* velocities = chained<XrSpaceVelocities>(locations->next, XR_TYPE_SPACE_VELOCITIES);
+        ENTOPTIC_XR_TRY(check_count(locations->locationCount, locations->locations, spaces.size(), "locations"));
+        if (velocities) ENTOPTIC_XR_TRY(check_count(velocities->velocityCount, velocities->velocities, spaces.size(), "velocities"));
+        for (std::size_t i = 0; i < spaces.size(); ++i) {
+            const PoseState state = locate(*spaces[i], *base, info->time);
+            locations->locations[i] = {location_flags(state), to_xr(valid_parts(state))};
+            if (velocities) write_velocity(state, velocities->velocities[i]);
+        }
+        return XR_SUCCESS;
+    });
+}
+
 XrResult XRAPI_CALL locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewState* view_state, uint32_t capacity,
                                  uint32_t* count, XrView* views) {
     return call("xrLocateViews", handle, [&]() -> Outcome {
@@ -149,19 +204,21 @@ XrResult XRAPI_CALL locate_views(XrSession handle, const XrViewLocateInfo* info,
         std::shared_ptr<Space> base;
         ENTOPTIC_XR_TRY(find(info->space, base));
         if (base->session() != session) return invalid("viewLocateInfo->space belongs to another session");
-        ENTOPTIC_XR_TRY(check_view_configuration(info->viewConfigurationType));
+        ENTOPTIC_XR_TRY(check_view_configuration(session->instance(), info->viewConfigurationType));
         ENTOPTIC_XR_TRY(check_time(info->displayTime));
+        const std::size_t view_total = view_count(info->viewConfigurationType);
         bool fill = false;
-        ENTOPTIC_XR_TRY(two_call(capacity, count, views, eye_count, fill));
-        for (int eye = 0; fill && eye < eye_count; ++eye) ENTOPTIC_XR_TRY(require(&views[eye], XR_TYPE_VIEW, "views"));
+        ENTOPTIC_XR_TRY(two_call(capacity, count, views, view_total, fill));
+        for (std::size_t i = 0; fill && i < view_total; ++i) ENTOPTIC_XR_TRY(require(&views[i], XR_TYPE_VIEW, "views"));
         const Space view(session, XR_REFERENCE_SPACE_TYPE_VIEW, {});
         const PoseState head = locate(view, *base, info->displayTime);
         view_state->viewStateFlags = location_flags(head);  // the bits are the same
         if (!fill) return XR_SUCCESS;
-        for (int eye = 0; eye < eye_count; ++eye) {
-            const EyeOptics& optics = session->host().headset().eyes[static_cast<std::size_t>(eye)];
-            views[eye].pose = to_xr(valid_parts(attached(head, optics.head_from_eye)));
-            views[eye].fov = {optics.fov.angle_left, optics.fov.angle_right, optics.fov.angle_up, optics.fov.angle_down};
+        Headset& headset = session->host().headset();
+        const auto fovs = view_fovs(headset, info->viewConfigurationType, info->displayTime);
+        for (std::size_t i = 0; i < view_total; ++i) {
+            views[i].pose = to_xr(valid_parts(attached(head, headset.eyes[i % eye_count].head_from_eye)));
+            views[i].fov = {fovs[i].angle_left, fovs[i].angle_right, fovs[i].angle_up, fovs[i].angle_down};
         }
         return XR_SUCCESS;
     });

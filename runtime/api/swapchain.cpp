@@ -35,14 +35,19 @@ Outcome check_size(const XrSwapchainCreateInfo& info) {
     return XR_SUCCESS;
 }
 
-Outcome check_create_info(const XrSwapchainCreateInfo& info, FrameService& frames) {
+// Those of the session's graphics API; none without graphics.
+std::vector<std::int64_t> swapchain_formats(Session& session) {
+    return session.graphics() ? session.graphics()->formats(session.host().frames().swapchain_formats()) : std::vector<std::int64_t>();
+}
+
+Outcome check_create_info(const XrSwapchainCreateInfo& info, Session& session) {
     if ((info.createFlags & ~known_create_flags) != 0) return invalid("createFlags has unknown bits ({:#x})", info.createFlags);
     if ((info.usageFlags & ~known_usage) != 0) return invalid("usageFlags has unknown bits ({:#x})", info.usageFlags);
     ENTOPTIC_XR_TRY(check_size(info));
     if ((info.createFlags & XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT) != 0) {
         return error(XR_ERROR_FEATURE_UNSUPPORTED, "protected content is not supported");
     }
-    const auto formats = frames.swapchain_formats();
+    const auto formats = swapchain_formats(session);
     if (std::find(formats.begin(), formats.end(), info.format) == formats.end()) {
         return error(XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "format {} is not offered; take one from xrEnumerateSwapchainFormats",
                      info.format);
@@ -57,7 +62,7 @@ Outcome allocate(Session& session, const XrSwapchainCreateInfo& info, SwapchainA
     request.array_layers = info.arraySize;
     request.mip_levels = info.mipCount;
     request.is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
-    ENTOPTIC_XR_TRY(session.graphics().describe(info, request));
+    ENTOPTIC_XR_TRY(session.graphics()->describe(info, request));
     auto made = session.host().frames().create_swapchain(request);
     if (!made) {
         if (made.error().kind == ErrorKind::failed) session.host().report_error(made.error().message);
@@ -73,7 +78,7 @@ Outcome make_swapchain(const std::shared_ptr<Session>& session, const XrSwapchai
     ENTOPTIC_XR_TRY(allocate(*session, info, allocation));
     const std::uint64_t id = allocation.id;
     std::unique_ptr<SwapchainImages> images;
-    if (Outcome imported = session->graphics().import(std::move(allocation), images); imported.failed()) {
+    if (Outcome imported = session->graphics()->import(std::move(allocation), images); imported.failed()) {
         session->host().frames().destroy_swapchain(id);
         session->host().report_error(imported.message());
         return imported;
@@ -88,7 +93,7 @@ XrResult XRAPI_CALL enumerate_swapchain_formats(XrSession handle, uint32_t capac
     return call("xrEnumerateSwapchainFormats", handle, [&]() -> Outcome {
         std::shared_ptr<Session> session;
         ENTOPTIC_XR_TRY(find(handle, session));
-        return two_call_values(capacity, count, formats, session->host().frames().swapchain_formats());
+        return two_call_values(capacity, count, formats, swapchain_formats(*session));
     });
 }
 
@@ -98,7 +103,7 @@ XrResult XRAPI_CALL create_swapchain(XrSession handle, const XrSwapchainCreateIn
         ENTOPTIC_XR_TRY(find(handle, session));
         ENTOPTIC_XR_TRY(require(info, XR_TYPE_SWAPCHAIN_CREATE_INFO, "createInfo"));
         ENTOPTIC_XR_TRY(require_pointer(swapchain_handle, "swapchain"));
-        ENTOPTIC_XR_TRY(check_create_info(*info, session->host().frames()));
+        ENTOPTIC_XR_TRY(check_create_info(*info, *session));
         std::shared_ptr<Swapchain> swapchain;
         ENTOPTIC_XR_TRY(make_swapchain(session, *info, swapchain));
         return publish(swapchain, handle_value(handle), swapchain_handle);

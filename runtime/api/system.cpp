@@ -3,6 +3,7 @@
 #include "runtime/api/functions.h"
 #include "runtime/api/limits.h"
 #include "runtime/api/verify.h"
+#include "runtime/objects/views.h"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +12,24 @@ namespace entoptic::runtime::api {
 
 namespace {
 
-constexpr std::array view_configurations{XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
 constexpr std::array blend_modes{XR_ENVIRONMENT_BLEND_MODE_OPAQUE};
 
 Outcome find_system(XrInstance handle, XrSystemId system, std::shared_ptr<Instance>& instance) {
     ENTOPTIC_XR_TRY(find(handle, instance));
     return check_system(system);
+}
+
+void fill_presence(Instance& instance, void* chain) {
+    if (!instance.enabled(XR_EXT_USER_PRESENCE_EXTENSION_NAME)) return;
+    auto* presence = chained<XrSystemUserPresencePropertiesEXT>(chain, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT);
+    if (presence) presence->supportsUserPresence = instance.host().headset().presence ? XR_TRUE : XR_FALSE;
+}
+
+// No headset here sees hands: the extension is there so that applications can ask and be told so.
+void fill_hand_tracking(Instance& instance, void* chain) {
+    if (!instance.enabled(XR_EXT_HAND_TRACKING_EXTENSION_NAME)) return;
+    auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(chain, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
+    if (hands) hands->supportsHandTracking = XR_FALSE;
 }
 
 }  // namespace
@@ -47,6 +60,8 @@ XrResult XRAPI_CALL get_system_properties(XrInstance handle, XrSystemId system, 
         std::strncpy(properties->systemName, headset.display.name.c_str(), sizeof(properties->systemName) - 1);
         properties->graphicsProperties = {largest_swapchain_side, largest_swapchain_side, max_layers};
         properties->trackingProperties = {XR_TRUE, XR_TRUE};
+        fill_presence(*instance, properties->next);
+        fill_hand_tracking(*instance, properties->next);
         auto* gaze = chained<XrSystemEyeGazeInteractionPropertiesEXT>(properties->next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT);
         if (gaze && instance->enabled(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME)) {
             gaze->supportsEyeGazeInteraction = headset.eye_tracker && headset.eye_tracker->present() ? XR_TRUE : XR_FALSE;
@@ -60,7 +75,7 @@ XrResult XRAPI_CALL enumerate_environment_blend_modes(XrInstance handle, XrSyste
     return call("xrEnumerateEnvironmentBlendModes", handle, [&]() -> Outcome {
         std::shared_ptr<Instance> instance;
         ENTOPTIC_XR_TRY(find_system(handle, system, instance));
-        ENTOPTIC_XR_TRY(check_view_configuration(type));
+        ENTOPTIC_XR_TRY(check_view_configuration(*instance, type));
         return two_call_values(capacity, count, modes, blend_modes);
     });
 }
@@ -70,7 +85,7 @@ XrResult XRAPI_CALL enumerate_view_configurations(XrInstance handle, XrSystemId 
     return call("xrEnumerateViewConfigurations", handle, [&]() -> Outcome {
         std::shared_ptr<Instance> instance;
         ENTOPTIC_XR_TRY(find_system(handle, system, instance));
-        return two_call_values(capacity, count, types, view_configurations);
+        return two_call_values(capacity, count, types, view_configurations(instance->features()));
     });
 }
 
@@ -80,7 +95,7 @@ XrResult XRAPI_CALL get_view_configuration_properties(XrInstance handle, XrSyste
         std::shared_ptr<Instance> instance;
         ENTOPTIC_XR_TRY(find_system(handle, system, instance));
         ENTOPTIC_XR_TRY(require(properties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES, "configurationProperties"));
-        ENTOPTIC_XR_TRY(check_view_configuration(type));
+        ENTOPTIC_XR_TRY(check_view_configuration(*instance, type));
         properties->viewConfigurationType = type;
         properties->fovMutable = XR_TRUE;  // each layer's own fov is used
         return XR_SUCCESS;
@@ -92,19 +107,19 @@ XrResult XRAPI_CALL enumerate_view_configuration_views(XrInstance handle, XrSyst
     return call("xrEnumerateViewConfigurationViews", handle, [&]() -> Outcome {
         std::shared_ptr<Instance> instance;
         ENTOPTIC_XR_TRY(find_system(handle, system, instance));
-        ENTOPTIC_XR_TRY(check_view_configuration(type));
+        ENTOPTIC_XR_TRY(check_view_configuration(*instance, type));
         bool fill = false;
-        ENTOPTIC_XR_TRY(two_call(capacity, count, views, eye_count, fill));
+        const std::size_t view_total = view_count(type);
+        ENTOPTIC_XR_TRY(two_call(capacity, count, views, view_total, fill));
         if (!fill) return XR_SUCCESS;
-        for (int eye = 0; eye < eye_count; ++eye) ENTOPTIC_XR_TRY(require(&views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW, "views"));
-        std::uint32_t width = 0, height = 0;
-        instance->host().recommended_eye_size(width, height);
-        for (int eye = 0; eye < eye_count; ++eye) {
-            views[eye].recommendedImageRectWidth = width;
-            views[eye].recommendedImageRectHeight = height;
-            views[eye].maxImageRectWidth = std::max(width, largest_view_side);
-            views[eye].maxImageRectHeight = std::max(height, largest_view_side);
-            views[eye].recommendedSwapchainSampleCount = views[eye].maxSwapchainSampleCount = 1;
+        for (std::size_t i = 0; i < view_total; ++i) ENTOPTIC_XR_TRY(require(&views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW, "views"));
+        for (std::size_t i = 0; i < view_total; ++i) {
+            const ViewSize size = recommended_view_size(instance->host(), type, i, instance->host().headset());
+            views[i].recommendedImageRectWidth = size.width;
+            views[i].recommendedImageRectHeight = size.height;
+            views[i].maxImageRectWidth = std::max(size.width, largest_view_side);
+            views[i].maxImageRectHeight = std::max(size.height, largest_view_side);
+            views[i].recommendedSwapchainSampleCount = views[i].maxSwapchainSampleCount = 1;
         }
         return XR_SUCCESS;
     });

@@ -1,5 +1,10 @@
 #include "runtime/api/verify.h"
 
+#include "runtime/api/structure_names.h"
+#include "runtime/objects/views.h"
+
+#include <algorithm>
+
 #include <openxr/openxr_reflection.h>
 
 namespace entoptic::runtime::api {
@@ -8,12 +13,9 @@ namespace {
 
 constexpr int longest_chain = 256;
 
-const char* structure_name(XrStructureType type) {
-#define ENTOPTIC_STRUCTURE_NAME(name, value) \
-    case name:                               \
-        return #name;
-    switch (type) { XR_LIST_ENUM_XrStructureType(ENTOPTIC_STRUCTURE_NAME) default : return "an unknown type"; }
-#undef ENTOPTIC_STRUCTURE_NAME
+const char* name_or_unknown(XrStructureType type) {
+    const char* name = structure_name(type);
+    return name ? name : "an unknown type";
 }
 
 bool known_view_configuration(XrViewConfigurationType type) {
@@ -32,7 +34,7 @@ Outcome handle_error(std::uint64_t handle, ObjectType type) {
 }
 
 Outcome type_error(const char* name, XrStructureType found, XrStructureType wanted) {
-    return invalid("{}->type is {} ({}); it must be {}", name, static_cast<int>(found), structure_name(found), structure_name(wanted));
+    return invalid("{}->type is {} ({}); it must be {}", name, static_cast<int>(found), name_or_unknown(found), name_or_unknown(wanted));
 }
 
 const void* find_in_chain(const void* next, XrStructureType type) {
@@ -79,10 +81,12 @@ Outcome check_pose(const XrPosef& pose) {
                  "the pose's orientation must be a unit quaternion within 1 % (it has length {}) and its position finite", norm);
 }
 
-Outcome check_view_configuration(XrViewConfigurationType type) {
-    if (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO) return XR_SUCCESS;
+Outcome check_view_configuration(const Instance& instance, XrViewConfigurationType type) {
+    const auto offered = view_configurations(instance.features());
+    if (std::find(offered.begin(), offered.end(), type) != offered.end()) return XR_SUCCESS;
     if (!known_view_configuration(type)) return invalid("{} is not a view configuration type", static_cast<int>(type));
-    return error(XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO is offered");
+    return error(XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "view configuration {} is not offered; see xrEnumerateViewConfigurations",
+                 static_cast<int>(type));
 }
 
 Pose to_pose(const XrPosef& pose) {

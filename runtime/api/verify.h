@@ -94,8 +94,9 @@ Outcome check_system(XrSystemId system);
 Outcome check_time(XrTime time);
 // XR_ERROR_POSE_INVALID unless finite and of unit length within 1 %.
 Outcome check_pose(const XrPosef& pose);
-// XR_ERROR_VALIDATION_FAILURE for a number that is no such enumerant, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for others than stereo.
-Outcome check_view_configuration(XrViewConfigurationType type);
+// XR_ERROR_VALIDATION_FAILURE for a number that is no such enumerant, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for one
+// that this application is not offered.
+Outcome check_view_configuration(const Instance& instance, XrViewConfigurationType type);
 // The text in a fixed array; empty when it is not terminated.
 template <std::size_t size> std::string bounded_text(const char (&text)[size]) {
     const std::size_t length = strnlen(text, size);

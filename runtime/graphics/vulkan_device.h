@@ -26,6 +26,7 @@ struct VulkanContext {
 class VulkanDevice final : public GraphicsDevice {
 public:
     explicit VulkanDevice(std::shared_ptr<VulkanContext> context) : context_(std::move(context)) {}
+    std::vector<std::int64_t> formats(const std::vector<std::int64_t>& compositor) const override { return compositor; }
     Outcome describe(const XrSwapchainCreateInfo& info, SwapchainRequest& request) const override;
     Outcome import(SwapchainAllocation allocation, std::unique_ptr<SwapchainImages>& images) override;
 

@@ -238,6 +238,8 @@ Outcome fill_context(Instance& instance, const XrGraphicsBindingVulkanKHR& bindi
 
 std::span<const FunctionEntry> vulkan_functions() { return entries; }
 
+bool has_graphics_binding(const void* chain) { return api::find_in_chain(chain, XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR) != nullptr; }
+
 Outcome make_graphics_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device) {
     const auto* binding = api::chained<XrGraphicsBindingVulkanKHR>(chain, XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR);
     const bool enabled = instance.enabled(enable) || instance.enabled(enable2);

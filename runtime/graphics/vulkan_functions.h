@@ -18,6 +18,9 @@ struct FunctionEntry {
 };
 std::span<const FunctionEntry> vulkan_functions();
 
+// Whether the chain of XrSessionCreateInfo names a graphics device: a headless session's does not.
+bool has_graphics_binding(const void* chain);
+
 // From the chain of XrSessionCreateInfo. XR_ERROR_GRAPHICS_DEVICE_INVALID when there is no Vulkan binding of the device that
 // xrGetVulkanGraphicsDevice named; XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING.
 Outcome make_graphics_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device);

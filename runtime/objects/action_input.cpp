@@ -2,8 +2,8 @@
 
 #include "runtime/objects/instance.h"
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace entoptic::runtime {
 
@@ -42,6 +42,7 @@ struct ActionInput::SyncContext {
     TimeNs now = 0;
     std::array<ControllerState, 2> controllers;
     std::array<bool, user_path_count> present{};
+    std::array<bool, user_path_count> overridden{};         // played by the application
     std::map<const ActionSet*, unsigned> active_users;      // bits of the user paths a set is active for
     std::map<std::string, std::uint32_t> highest_priority;  // of the active sets with a binding to this identifier
 };
@@ -55,43 +56,69 @@ Outcome ActionInput::attach(const std::vector<std::shared_ptr<ActionSet>>& sets)
     sets_ = sets;
     for (const auto& set : sets) {
         set->mark_attached();
-        for (auto& action : set->actions()) bound_.push_back({std::move(action), {}, {}, {}, {}, {}});
+        for (auto& action : set->actions()) bound_.push_back({std::move(action), {}, {}, {}, {}, {}, false});
     }
+    for (auto& [path, suggestions] : instance_.suggestions().all()) suggestions_[find_profile(path)] = std::move(suggestions);
+    for (int i = 0; i < user_path_count; ++i) best_[static_cast<std::size_t>(i)] = best_profile(static_cast<UserPath>(i));
     choose_profiles();
-    for (Bound& bound : bound_) bind(bound);
     return XR_SUCCESS;
 }
 
-// Both hands present themselves as the most capable profile that the application has bindings for.
-void ActionInput::choose_profiles() {
-    const Profile* hands = nullptr;
-    for (const auto& [path, bindings] : instance_.suggestions().all()) {
-        const Profile* profile = find_profile(path);
-        for (const SuggestedBinding& suggested : bindings) {
-            const auto action = suggested.action.lock();
-            const auto split = split_binding_path(suggested.path);
-            if (!action || !split || !find(*action)) continue;
-            if (!is_hand(split->user))
-                candidates_[index_of(split->user)] = profile;
-            else if (profile->preference < 100 && (!hands || profile->preference < hands->preference))
-                hands = profile;
-        }
+bool ActionInput::suggested(const Profile& profile, UserPath user) const {
+    const auto entry = suggestions_.find(&profile);
+    if (entry == suggestions_.end()) return false;
+    return std::any_of(entry->second.bindings.begin(), entry->second.bindings.end(), [&](const SuggestedBinding& binding) {
+        const auto action = binding.action.lock();
+        const auto split = split_binding_path(binding.path);
+        return action && split && split->user == user && find(*action);
+    });
+}
+
+// Hands present themselves as the most capable profile that the application has bindings for.
+const Profile* ActionInput::best_profile(UserPath user) const {
+    const Profile* best = nullptr;
+    for (const auto& [profile, suggestions] : suggestions_) {
+        const bool better = !best || profile->preference < best->preference;
+        if (better && (profile->preference < 100 || !is_hand(user)) && suggested(*profile, user)) best = profile;
     }
-    candidates_[index_of(UserPath::left_hand)] = candidates_[index_of(UserPath::right_hand)] = hands;
+    return best;
+}
+
+// Binds again when a device came that is another one than before.
+void ActionInput::choose_profiles() {
+    std::array<const Profile*, user_path_count> chosen{};
+    for (int i = 0; i < user_path_count; ++i) {
+        const auto user = static_cast<UserPath>(i);
+        const auto device = overrides_.device(user);
+        const bool as_played = device && device->active && suggested(*device->profile, user);
+        chosen[index_of(user)] = as_played ? device->profile : best_[index_of(user)];
+    }
+    if (chosen == candidates_) return;
+    candidates_ = chosen;
+    for (Bound& bound : bound_) bind(bound);
+}
+
+DpadSettings ActionInput::dpad_settings(const Bound& bound, const ProfileSuggestions& suggestions, std::string_view path,
+                                        Source source) const {
+    for (const SuggestedDpad& dpad : suggestions.dpads) {
+        if (is_dpad(source) && path.starts_with(dpad.path + "/") && dpad.set.lock() == bound.action->set) return dpad.settings;
+    }
+    return {};
 }
 
 void ActionInput::bind(Bound& bound) const {
     const ComponentKind wanted = kind_of(bound.action->type);
-    for (const auto& [path, bindings] : instance_.suggestions().all()) {
-        const Profile* profile = find_profile(path);
-        for (const SuggestedBinding& suggested : bindings) {
-            const auto split = split_binding_path(suggested.path);
-            if (suggested.action.lock() != bound.action || !split || candidates_[index_of(split->user)] != profile) continue;
-            const Component* component = profile->find(split->user, split->below, wanted);
+    bound.bindings.clear();
+    for (const auto& [profile, suggestions] : suggestions_) {
+        for (const SuggestedBinding& suggestion : suggestions.bindings) {
+            const auto split = split_binding_path(suggestion.path);
+            if (suggestion.action.lock() != bound.action || !split || candidates_[index_of(split->user)] != profile) continue;
+            const Component* component = profile->find(split->user, split->below, wanted, instance_.features());
             const bool declared = bound.action->subaction_paths.empty() || bound.action->declares(split->user);
             if (!component || !convertible(component->kind, wanted) || !declared) continue;
             const std::string user(user_path_text(split->user));
-            bound.bindings.push_back({split->user, component, suggested.path, user + std::string(identifier_of(split->below))});
+            bound.bindings.push_back({split->user, component, suggestion.path, user + std::string(identifier_of(split->below)),
+                                      dpad_settings(bound, suggestions, suggestion.path, component->source)});
         }
     }
 }
@@ -127,7 +154,36 @@ ActionInput::SyncContext ActionInput::read_devices(TimeNs now) {
     }
     context.present[index_of(UserPath::head)] = true;
     context.present[index_of(UserPath::eyes)] = headset.eye_tracker && headset.eye_tracker->present();
+    for (int i = 0; i < user_path_count; ++i) {
+        const auto device = overrides_.device(static_cast<UserPath>(i));
+        if (device) context.present[static_cast<std::size_t>(i)] = context.overridden[static_cast<std::size_t>(i)] = device->active;
+    }
     return context;
+}
+
+// What the application set for the component: itself, or the axis of its stick.
+ComponentValue ActionInput::read_override(UserPath user, std::string_view component) const {
+    const std::string path = std::string(user_path_text(user)) + std::string(component);
+    if (const auto value = overrides_.value(path)) return *value;
+    const bool x = path.ends_with("/x"), y = path.ends_with("/y");
+    const auto stick = x || y ? overrides_.value(path.substr(0, path.size() - 2)) : std::nullopt;
+    return stick ? ComponentValue{x ? stick->x : stick->y, 0} : ComponentValue{};
+}
+
+ComponentValue ActionInput::read(UserPath user, Source source, std::string_view component, const SyncContext& context) const {
+    if (context.overridden[index_of(user)]) return read_override(user, component);
+    return is_hand(user) ? read_component(source, context.controllers[index_of(user)]) : ComponentValue{};
+}
+
+ComponentValue ActionInput::read(const Binding& binding, const SyncContext& context) const {
+    const Source source = binding.component->source;
+    const bool set = context.overridden[index_of(binding.user)] &&
+                     overrides_.value(std::string(user_path_text(binding.user)) + std::string(binding.component->path));
+    if (!is_dpad(source) || set) return read(binding.user, source, binding.component->path, context);
+    const bool stick = dpad_parent(source) == "/input/thumbstick";
+    const ComponentValue thumb = read(binding.user, stick ? Source::thumbstick : Source::trackpad, dpad_parent(source), context);
+    const float press = stick ? 1.0f : read(binding.user, Source::trackpad_click, "/input/trackpad/click", context).x;
+    return {dpad_pressed(source, thumb, press, binding.dpad, binding.pressed) ? 1.0f : 0.0f, 0};
 }
 
 bool ActionInput::update_profiles(const SyncContext& context) {
@@ -161,28 +217,28 @@ void ActionInput::update(Bound& bound, const SyncContext& context) {
     std::array<ComponentValue, user_path_count> values{};
     std::array<std::optional<PoseRoot>, user_path_count> roots{};
     std::optional<PoseRoot> root;
-    bool keeps_root = false;
+    bool keeps_root = false, root_usable = false;
     const bool to_boolean = bound.action->type == XR_ACTION_TYPE_BOOLEAN_INPUT;
     for (Binding& binding : bound.bindings) {
         const bool outranked = bound.action->type != XR_ACTION_TYPE_VIBRATION_OUTPUT && usable(bound, binding, context) &&
                                context.highest_priority.at(binding.identifier) > bound.action->set->priority;
+        const PoseRoot candidate{binding.user, binding.component->source, binding.component->path};
+        keeps_root |= bound.root == candidate;
         if (!usable(bound, binding, context) || outranked) {
             binding.pressed = false;
             continue;
         }
         const std::size_t user = index_of(binding.user);
-        ComponentValue value;
-        if (is_hand(binding.user)) value = read_component(binding.component->source, context.controllers[user]);
+        ComponentValue value = read(binding, context);
         if (to_boolean || binding.component->kind == ComponentKind::boolean) {
             binding.pressed = value.x >= (binding.pressed ? release_threshold : press_threshold);
             value = {binding.pressed ? 1.0f : 0.0f, 0};
         }
         if (!active[user] || stronger(value, values[user])) values[user] = value;
         active[user] = true;
-        const PoseRoot candidate{binding.user, binding.component->source};
         if (!roots[user]) roots[user] = candidate;
         if (!root) root = candidate;
-        keeps_root |= bound.root == candidate;
+        root_usable |= bound.root == candidate;
     }
     ComponentValue combined;
     bool any = false;
@@ -195,6 +251,7 @@ void ActionInput::update(Bound& bound, const SyncContext& context) {
     advance(bound.combined, any, combined, context.now);
     bound.root_by_user = roots;
     if (!keeps_root) bound.root = root;
+    bound.root_usable = keeps_root ? root_usable : root.has_value();
 }
 
 Outcome ActionInput::sync(const std::vector<ActiveSet>& active, TimeNs now, bool focused, bool& profile_changed) {
@@ -213,6 +270,7 @@ Outcome ActionInput::sync(const std::vector<ActiveSet>& active, TimeNs now, bool
         }
         context.active_users[entry.set.get()] |= entry.subaction ? bit_of(*entry.subaction) : all_users;
     }
+    choose_profiles();
     profile_changed = update_profiles(context);
     if (!focused) context.active_users.clear();
     set_priorities(context);
@@ -237,7 +295,8 @@ std::optional<PoseRoot> ActionInput::pose_root(const Action& action, std::option
     std::lock_guard lock(mutex_);
     const Bound* bound = find(action);
     if (!bound) return std::nullopt;
-    return subaction ? bound->root_by_user[index_of(*subaction)] : bound->root;
+    if (subaction) return bound->root_by_user[index_of(*subaction)];
+    return bound->root_usable ? bound->root : std::nullopt;
 }
 
 std::vector<UserPath> ActionInput::haptic_outputs(const Action& action, std::optional<UserPath> subaction) const {

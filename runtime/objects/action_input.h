@@ -3,9 +3,12 @@
 
 #include "interfaces/headset.h"
 #include "runtime/objects/action.h"
+#include "runtime/objects/binding_suggestions.h"
+#include "runtime/objects/device_overrides.h"
 #include "runtime/objects/outcome.h"
 
 #include <array>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,6 +28,7 @@ struct ActionState {
 struct PoseRoot {
     UserPath user = UserPath::left_hand;
     Source source = Source::none;
+    std::string_view component;  // "/input/grip/pose"
     bool operator==(const PoseRoot&) const = default;
 };
 
@@ -58,13 +62,16 @@ public:
     std::vector<std::string> bound_sources(const Action& action) const;
     // Null while no profile is current.
     const Profile* current_profile(UserPath user) const;
+    // Devices that the application plays itself; they take effect with the next sync.
+    DeviceOverrides& overrides() { return overrides_; }
 
 private:
     struct Binding {
         UserPath user;
         const Component* component;
         std::string path, identifier;  // full binding path; user path and identifier, what priorities are about
-        bool pressed = false;          // hysteresis of scalar to boolean
+        DpadSettings dpad;
+        bool pressed = false;  // hysteresis of scalar to boolean
     };
     struct Bound {
         std::shared_ptr<Action> action;
@@ -72,17 +79,24 @@ private:
         std::array<ActionState, user_path_count> by_user;
         ActionState combined;
         std::array<std::optional<PoseRoot>, user_path_count> root_by_user;
-        std::optional<PoseRoot> root;
+        std::optional<PoseRoot> root;  // of all subaction paths together: one device, kept while it is bound
+        bool root_usable = false;      // and it is there
     };
     struct SyncContext;
 
     const Bound* find(const Action& action) const;
+    bool suggested(const Profile& profile, UserPath user) const;
+    const Profile* best_profile(UserPath user) const;
     void choose_profiles();
     void bind(Bound& bound) const;
+    DpadSettings dpad_settings(const Bound& bound, const ProfileSuggestions& suggestions, std::string_view path, Source source) const;
     bool update_profiles(const SyncContext& context);
     void update(Bound& bound, const SyncContext& context);
     static bool usable(const Bound& bound, const Binding& binding, const SyncContext& context);
     SyncContext read_devices(TimeNs now);
+    ComponentValue read(const Binding& binding, const SyncContext& context) const;
+    ComponentValue read(UserPath user, Source source, std::string_view component, const SyncContext& context) const;
+    ComponentValue read_override(UserPath user, std::string_view component) const;
     void set_priorities(SyncContext& context);
 
     Instance& instance_;
@@ -90,7 +104,10 @@ private:
     bool attached_ = false;
     std::vector<std::shared_ptr<ActionSet>> sets_;
     std::vector<Bound> bound_;
-    std::array<const Profile*, user_path_count> candidates_{};  // what the application's suggestions make of each user path
+    DeviceOverrides overrides_;
+    std::map<const Profile*, ProfileSuggestions> suggestions_;  // as they were when the sets were attached
+    std::array<const Profile*, user_path_count> best_{};        // what the application's suggestions make of each user path
+    std::array<const Profile*, user_path_count> candidates_{};  // what is bound: the same, or a device that the application plays
     std::array<const Profile*, user_path_count> current_{};
 };
 

@@ -1,6 +1,7 @@
 // What the application suggested with xrSuggestInteractionProfileBindings. Thread-safe.
 #pragma once
 
+#include "runtime/objects/dpad.h"
 #include "runtime/openxr.h"
 
 #include <map>
@@ -12,27 +13,40 @@
 namespace entoptic::runtime {
 
 class Action;
+class ActionSet;
 
 struct SuggestedBinding {
     std::weak_ptr<Action> action;
     std::string path;
 };
 
+// How the direction pad made of one stick or pad behaves for the actions of a set (XR_EXT_dpad_binding).
+struct SuggestedDpad {
+    std::string path;  // "/user/hand/left/input/trackpad"
+    std::weak_ptr<ActionSet> set;
+    DpadSettings settings;
+};
+
+struct ProfileSuggestions {
+    std::vector<SuggestedBinding> bindings;
+    std::vector<SuggestedDpad> dpads;
+};
+
 class BindingSuggestions {
 public:
     // Replaces what was suggested for this profile before.
-    void set(const std::string& profile, std::vector<SuggestedBinding> bindings) {
+    void set(const std::string& profile, ProfileSuggestions suggestions) {
         std::lock_guard lock(mutex_);
-        by_profile_[profile] = std::move(bindings);
+        by_profile_[profile] = std::move(suggestions);
     }
-    std::map<std::string, std::vector<SuggestedBinding>> all() const {
+    std::map<std::string, ProfileSuggestions> all() const {
         std::lock_guard lock(mutex_);
         return by_profile_;
     }
 
 private:
     mutable std::mutex mutex_;
-    std::map<std::string, std::vector<SuggestedBinding>> by_profile_;
+    std::map<std::string, ProfileSuggestions> by_profile_;
 };
 
 }  // namespace entoptic::runtime

@@ -5,7 +5,9 @@
 #include "runtime/objects/outcome.h"
 #include "runtime/openxr.h"
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace entoptic::runtime {
 
@@ -28,6 +30,8 @@ public:
 class GraphicsDevice {
 public:
     virtual ~GraphicsDevice() = default;
+    // The graphics API's numbers of the formats that describe() takes, preferred first. `compositor` are FrameService::swapchain_formats().
+    virtual std::vector<std::int64_t> formats(const std::vector<std::int64_t>& compositor) const = 0;
     // XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, XR_ERROR_FEATURE_UNSUPPORTED, XR_ERROR_VALIDATION_FAILURE; else fills what is API specific:
     // format, usage and create flags.
     virtual Outcome describe(const XrSwapchainCreateInfo& info, SwapchainRequest& request) const = 0;

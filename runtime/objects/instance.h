@@ -5,6 +5,7 @@
 #include "runtime/objects/binding_suggestions.h"
 #include "runtime/objects/debug_utils.h"
 #include "runtime/objects/event_queue.h"
+#include "runtime/objects/features.h"
 #include "runtime/objects/handle_table.h"
 #include "runtime/objects/name_registry.h"
 #include "runtime/objects/path_table.h"
@@ -20,7 +21,10 @@ constexpr XrSystemId headset_system = 1;
 
 class Instance final : public Object {
 public:
-    explicit Instance(ApplicationIdentity application) : Object(ObjectType::instance), application_(std::move(application)) {}
+    explicit Instance(ApplicationIdentity application)
+        : Object(ObjectType::instance),
+          application_(std::move(application)),
+          features_(features_of(application_.api_version, application_.extensions)) {}
     // The host is made after the instance's own debug messengers, so that they hear why it could not be.
     void set_host(std::unique_ptr<RuntimeHost> host) { host_ = std::move(host); }
 
@@ -30,6 +34,9 @@ public:
     RuntimeHost& host() { return *host_; }
     const ApplicationIdentity& application() const { return application_; }
     bool enabled(std::string_view extension) const;
+    Features features() const { return features_; }
+    // True with any of these.
+    bool has(Features any) const { return available(any, features_); }
 
     PathTable& paths() { return paths_; }
     EventQueue& events() { return events_; }
@@ -50,6 +57,7 @@ public:
 
 private:
     const ApplicationIdentity application_;
+    const Features features_;
     std::unique_ptr<RuntimeHost> host_;
     PathTable paths_;
     EventQueue events_;

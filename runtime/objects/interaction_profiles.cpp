@@ -1,5 +1,6 @@
 #include "runtime/objects/interaction_profiles.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -14,39 +15,122 @@ constexpr std::uint8_t head = bit(UserPath::head), gamepad = bit(UserPath::gamep
 constexpr ComponentKind boolean = ComponentKind::boolean, scalar = ComponentKind::scalar, vector2 = ComponentKind::vector2;
 constexpr ComponentKind pose = ComponentKind::pose, vibration = ComponentKind::haptic;
 
-constexpr Component simple_components[] = {
-    {"/input/select/click", boolean, Source::select_click, hands},
-    {"/input/menu/click", boolean, Source::menu_click, hands},
+constexpr Component poses[] = {
     {"/input/grip/pose", pose, Source::grip, hands},
     {"/input/aim/pose", pose, Source::aim, hands},
+    {"/input/grip_surface/pose", pose, Source::palm, hands, feature_1_1 | feature_maintenance1},
+    {"/input/palm_ext/pose", pose, Source::palm, hands, feature_palm_pose},
+    {"/input/pinch_ext/pose", pose, Source::aim, hands, feature_hand_interaction},
+    {"/input/poke_ext/pose", pose, Source::aim, hands, feature_hand_interaction},
+};
+
+constexpr Component haptic[] = {
     {"/output/haptic", vibration, Source::haptic, hands},
 };
 
-constexpr Component daydream_components[] = {
-    {"/input/select/click", boolean, Source::select_click, hands},
+constexpr Component stick[] = {
+    {"/input/thumbstick", vector2, Source::thumbstick, hands},
+    {"/input/thumbstick/x", scalar, Source::thumbstick_x, hands},
+    {"/input/thumbstick/y", scalar, Source::thumbstick_y, hands},
+    {"/input/thumbstick/click", boolean, Source::thumbstick_click, hands},
+};
+
+constexpr Component stick_touch[] = {
+    {"/input/thumbstick/touch", boolean, Source::thumbstick_touch, hands},
+};
+
+constexpr Component stick_dpad[] = {
+    {"/input/thumbstick/dpad_up", boolean, Source::stick_up, hands, feature_dpad},
+    {"/input/thumbstick/dpad_down", boolean, Source::stick_down, hands, feature_dpad},
+    {"/input/thumbstick/dpad_left", boolean, Source::stick_left, hands, feature_dpad},
+    {"/input/thumbstick/dpad_right", boolean, Source::stick_right, hands, feature_dpad},
+};
+
+constexpr Component pad[] = {
     {"/input/trackpad", vector2, Source::trackpad, hands},
     {"/input/trackpad/x", scalar, Source::trackpad_x, hands},
     {"/input/trackpad/y", scalar, Source::trackpad_y, hands},
-    {"/input/trackpad/click", boolean, Source::trackpad_click, hands},
     {"/input/trackpad/touch", boolean, Source::trackpad_touch, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
 };
 
-constexpr Component vive_components[] = {
+constexpr Component pad_click[] = {
+    {"/input/trackpad/click", boolean, Source::trackpad_click, hands},
+};
+
+constexpr Component pad_force[] = {
+    {"/input/trackpad/force", scalar, Source::trackpad_force, hands},
+};
+
+constexpr Component pad_dpad[] = {
+    {"/input/trackpad/dpad_up", boolean, Source::pad_up, hands, feature_dpad},
+    {"/input/trackpad/dpad_down", boolean, Source::pad_down, hands, feature_dpad},
+    {"/input/trackpad/dpad_left", boolean, Source::pad_left, hands, feature_dpad},
+    {"/input/trackpad/dpad_right", boolean, Source::pad_right, hands, feature_dpad},
+    {"/input/trackpad/dpad_center", boolean, Source::pad_center, hands, feature_dpad},
+};
+
+constexpr Component faces[] = {
+    {"/input/x/click", boolean, Source::a_click, left},
+    {"/input/y/click", boolean, Source::b_click, left},
+    {"/input/a/click", boolean, Source::a_click, right},
+    {"/input/b/click", boolean, Source::b_click, right},
+};
+
+constexpr Component face_touches[] = {
+    {"/input/x/touch", boolean, Source::a_click, left},
+    {"/input/y/touch", boolean, Source::b_click, left},
+    {"/input/a/touch", boolean, Source::a_click, right},
+    {"/input/b/touch", boolean, Source::b_click, right},
+};
+
+constexpr Component menu_left_system_right[] = {
+    {"/input/menu/click", boolean, Source::menu_click, left},
+    {"/input/system/click", boolean, Source::system_click, right},
+};
+
+constexpr Component menu[] = {
+    {"/input/menu/click", boolean, Source::menu_click, hands},
+};
+
+constexpr Component system_button[] = {
     {"/input/system/click", boolean, Source::system_click, hands},
-    {"/input/squeeze/click", boolean, Source::squeeze, hands},
-    {"/input/menu/click", boolean, Source::menu_click, hands},
+};
+
+constexpr Component trigger_click[] = {
     {"/input/trigger/click", boolean, Source::trigger, hands},
+};
+
+constexpr Component trigger_value[] = {
     {"/input/trigger/value", scalar, Source::trigger, hands},
-    {"/input/trackpad", vector2, Source::trackpad, hands},
-    {"/input/trackpad/x", scalar, Source::trackpad_x, hands},
-    {"/input/trackpad/y", scalar, Source::trackpad_y, hands},
-    {"/input/trackpad/click", boolean, Source::trackpad_click, hands},
-    {"/input/trackpad/touch", boolean, Source::trackpad_touch, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
-    {"/output/haptic", vibration, Source::haptic, hands},
+};
+
+constexpr Component trigger_touch[] = {
+    {"/input/trigger/touch", boolean, Source::trigger_touch, hands},
+};
+
+constexpr Component squeeze_click[] = {
+    {"/input/squeeze/click", boolean, Source::squeeze, hands},
+};
+
+constexpr Component squeeze_value[] = {
+    {"/input/squeeze/value", scalar, Source::squeeze, hands},
+};
+
+constexpr Component thumbrest[] = {
+    {"/input/thumbrest/touch", boolean, Source::none, hands},
+};
+
+constexpr Component select[] = {
+    {"/input/select/click", boolean, Source::select_click, hands},
+};
+
+constexpr Component shoulder[] = {
+    {"/input/shoulder/click", boolean, Source::none, hands},
+};
+
+constexpr Component proximity[] = {
+    {"/input/trigger/proximity", boolean, Source::none, hands},
+    {"/input/thumb_resting_surfaces/proximity", boolean, Source::none, hands},
 };
 
 constexpr Component vive_pro_components[] = {
@@ -54,24 +138,6 @@ constexpr Component vive_pro_components[] = {
     {"/input/volume_up/click", boolean, Source::none, head},
     {"/input/volume_down/click", boolean, Source::none, head},
     {"/input/mute_mic/click", boolean, Source::none, head},
-};
-
-constexpr Component motion_components[] = {
-    {"/input/menu/click", boolean, Source::menu_click, hands},
-    {"/input/squeeze/click", boolean, Source::squeeze, hands},
-    {"/input/trigger/value", scalar, Source::trigger, hands},
-    {"/input/thumbstick", vector2, Source::thumbstick, hands},
-    {"/input/thumbstick/x", scalar, Source::thumbstick_x, hands},
-    {"/input/thumbstick/y", scalar, Source::thumbstick_y, hands},
-    {"/input/thumbstick/click", boolean, Source::thumbstick_click, hands},
-    {"/input/trackpad", vector2, Source::trackpad, hands},
-    {"/input/trackpad/x", scalar, Source::trackpad_x, hands},
-    {"/input/trackpad/y", scalar, Source::trackpad_y, hands},
-    {"/input/trackpad/click", boolean, Source::trackpad_click, hands},
-    {"/input/trackpad/touch", boolean, Source::trackpad_touch, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
-    {"/output/haptic", vibration, Source::haptic, hands},
 };
 
 constexpr Component xbox_components[] = {
@@ -101,88 +167,185 @@ constexpr Component xbox_components[] = {
     {"/output/haptic_right", vibration, Source::none, gamepad},
     {"/output/haptic_left_trigger", vibration, Source::none, gamepad},
     {"/output/haptic_right_trigger", vibration, Source::none, gamepad},
+    {"/input/thumbstick/dpad_up", boolean, Source::none, gamepad, feature_dpad},
+    {"/input/thumbstick/dpad_down", boolean, Source::none, gamepad, feature_dpad},
+    {"/input/thumbstick/dpad_left", boolean, Source::none, gamepad, feature_dpad},
+    {"/input/thumbstick/dpad_right", boolean, Source::none, gamepad, feature_dpad},
 };
 
-constexpr Component go_components[] = {
-    {"/input/system/click", boolean, Source::system_click, hands},
-    {"/input/trigger/click", boolean, Source::trigger, hands},
+constexpr Component back[] = {
     {"/input/back/click", boolean, Source::menu_click, hands},
-    {"/input/trackpad", vector2, Source::trackpad, hands},
-    {"/input/trackpad/x", scalar, Source::trackpad_x, hands},
-    {"/input/trackpad/y", scalar, Source::trackpad_y, hands},
-    {"/input/trackpad/click", boolean, Source::trackpad_click, hands},
-    {"/input/trackpad/touch", boolean, Source::trackpad_touch, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
 };
 
-constexpr Component touch_components[] = {
-    {"/input/x/click", boolean, Source::a_click, left},
-    {"/input/x/touch", boolean, Source::a_click, left},
-    {"/input/y/click", boolean, Source::b_click, left},
-    {"/input/y/touch", boolean, Source::b_click, left},
-    {"/input/menu/click", boolean, Source::menu_click, left},
-    {"/input/a/click", boolean, Source::a_click, right},
-    {"/input/a/touch", boolean, Source::a_click, right},
-    {"/input/b/click", boolean, Source::b_click, right},
-    {"/input/b/touch", boolean, Source::b_click, right},
-    {"/input/system/click", boolean, Source::system_click, right},
-    {"/input/squeeze/value", scalar, Source::squeeze, hands},
-    {"/input/trigger/value", scalar, Source::trigger, hands},
-    {"/input/trigger/touch", boolean, Source::trigger_touch, hands},
-    {"/input/thumbstick", vector2, Source::thumbstick, hands},
-    {"/input/thumbstick/x", scalar, Source::thumbstick_x, hands},
-    {"/input/thumbstick/y", scalar, Source::thumbstick_y, hands},
-    {"/input/thumbstick/click", boolean, Source::thumbstick_click, hands},
-    {"/input/thumbstick/touch", boolean, Source::thumbstick_touch, hands},
-    {"/input/thumbrest/touch", boolean, Source::none, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
-    {"/output/haptic", vibration, Source::haptic, hands},
+constexpr Component touch_proximity[] = {
+    {"/input/trigger/proximity", boolean, Source::none, hands, feature_1_1},
+    {"/input/thumb_resting_surfaces/proximity", boolean, Source::none, hands, feature_1_1},
+    {"/input/trigger/proximity_fb", boolean, Source::none, hands, feature_touch_proximity},
+    {"/input/thumb_fb/proximity_fb", boolean, Source::none, hands, feature_touch_proximity},
 };
 
-constexpr Component index_components[] = {
-    {"/input/system/click", boolean, Source::system_click, hands},
-    {"/input/system/touch", boolean, Source::system_click, hands},
-    {"/input/a/click", boolean, Source::a_click, hands},
-    {"/input/a/touch", boolean, Source::a_click, hands},
-    {"/input/b/click", boolean, Source::b_click, hands},
-    {"/input/b/touch", boolean, Source::b_click, hands},
-    {"/input/squeeze/value", scalar, Source::squeeze, hands},
-    {"/input/squeeze/force", scalar, Source::none, hands},
-    {"/input/trigger/click", boolean, Source::trigger, hands},
-    {"/input/trigger/value", scalar, Source::trigger, hands},
-    {"/input/trigger/touch", boolean, Source::trigger_touch, hands},
+constexpr Component index_own[] = {
+    {"/input/system/touch", boolean, Source::system_click, hands}, {"/input/a/click", boolean, Source::a_click, hands},
+    {"/input/a/touch", boolean, Source::a_click, hands},           {"/input/b/click", boolean, Source::b_click, hands},
+    {"/input/b/touch", boolean, Source::b_click, hands},           {"/input/squeeze/force", scalar, Source::none, hands},
+};
+
+constexpr Component focus3_own[] = {
+    {"/input/squeeze/touch", boolean, Source::squeeze, hands},
+};
+
+constexpr Component ml2_own[] = {
+    {"/input/home/click", boolean, Source::system_click, hands},
+};
+
+constexpr Component touch_pro_own[] = {
+    {"/input/thumbrest/force", scalar, Source::none, hands},        {"/input/stylus_fb/force", scalar, Source::none, hands},
+    {"/input/trigger/curl_fb", scalar, Source::none, hands},        {"/input/trigger/slide_fb", scalar, Source::none, hands},
+    {"/input/thumb_fb/proximity_fb", boolean, Source::none, hands}, {"/input/trigger/proximity_fb", boolean, Source::none, hands},
+    {"/output/haptic_trigger_fb", vibration, Source::none, hands},  {"/output/haptic_thumb_fb", vibration, Source::none, hands},
+};
+
+constexpr Component touch_plus_own[] = {
+    {"/input/thumb_meta/proximity_meta", boolean, Source::none, hands},
+    {"/input/trigger/proximity_meta", boolean, Source::none, hands},
+    {"/input/trigger/curl_meta", scalar, Source::none, hands},
+    {"/input/trigger/slide_meta", scalar, Source::none, hands},
+    {"/input/trigger/force", scalar, Source::none, hands},
+};
+
+constexpr Component meta_pro_own[] = {
+    {"/input/thumbrest/force", scalar, Source::none, hands},    {"/input/stylus/force", scalar, Source::none, hands},
+    {"/input/trigger_curl/value", scalar, Source::none, hands}, {"/input/trigger_slide/value", scalar, Source::none, hands},
+    {"/output/haptic_trigger", vibration, Source::none, hands}, {"/output/haptic_thumb", vibration, Source::none, hands},
+};
+
+constexpr Component meta_plus_own[] = {
+    {"/input/trigger_curl/value", scalar, Source::none, hands},
+    {"/input/trigger_slide/value", scalar, Source::none, hands},
+    {"/input/trigger/force", scalar, Source::none, hands},
+};
+
+constexpr Component g3_own[] = {
     {"/input/thumbstick", vector2, Source::thumbstick, hands},
-    {"/input/thumbstick/x", scalar, Source::thumbstick_x, hands},
-    {"/input/thumbstick/y", scalar, Source::thumbstick_y, hands},
     {"/input/thumbstick/click", boolean, Source::thumbstick_click, hands},
-    {"/input/thumbstick/touch", boolean, Source::thumbstick_touch, hands},
-    {"/input/trackpad", vector2, Source::trackpad, hands},
-    {"/input/trackpad/x", scalar, Source::trackpad_x, hands},
-    {"/input/trackpad/y", scalar, Source::trackpad_y, hands},
-    {"/input/trackpad/force", scalar, Source::trackpad_force, hands},
-    {"/input/trackpad/touch", boolean, Source::trackpad_touch, hands},
-    {"/input/grip/pose", pose, Source::grip, hands},
-    {"/input/aim/pose", pose, Source::aim, hands},
-    {"/output/haptic", vibration, Source::haptic, hands},
+};
+
+constexpr Component hand_own[] = {
+    {"/input/pinch_ext/value", scalar, Source::trigger, hands},        {"/input/pinch_ext/ready_ext", boolean, Source::ready, hands},
+    {"/input/grasp_ext/value", scalar, Source::squeeze, hands},        {"/input/grasp_ext/ready_ext", boolean, Source::ready, hands},
+    {"/input/aim_activate_ext/value", scalar, Source::trigger, hands}, {"/input/aim_activate_ext/ready_ext", boolean, Source::ready, hands},
 };
 
 constexpr Component eye_components[] = {
     {"/input/gaze_ext/pose", pose, Source::gaze, eyes},
 };
 
+constexpr Component menu_left[] = {
+    {"/input/menu/click", boolean, Source::menu_click, left},
+};
+
+constexpr Component pad_dpad_of_stick[] = {
+    {"/input/trackpad/dpad_up", boolean, Source::none, hands, feature_dpad},
+    {"/input/trackpad/dpad_down", boolean, Source::none, hands, feature_dpad},
+    {"/input/trackpad/dpad_left", boolean, Source::none, hands, feature_dpad},
+    {"/input/trackpad/dpad_right", boolean, Source::none, hands, feature_dpad},
+    {"/input/trackpad/dpad_center", boolean, Source::none, hands, feature_dpad},
+};
+
+using Part = std::span<const Component>;
+
+constexpr Part index_profile[] = {system_button, index_own,  squeeze_value, trigger_click, trigger_value, trigger_touch, stick,
+                                  stick_touch,   stick_dpad, pad,           pad_force,     pad_dpad,      poses,         haptic};
+constexpr Part vive_profile[] = {system_button, squeeze_click, menu, trigger_click, trigger_value, pad, pad_click, pad_dpad, poses, haptic};
+constexpr Part touch_profile[] = {
+    faces, face_touches, menu_left_system_right, squeeze_value, trigger_value, trigger_touch, stick, stick_touch, stick_dpad, thumbrest,
+    poses, haptic,       touch_proximity};
+constexpr Part meta_pro_profile[] = {faces,         face_touches,  menu_left_system_right,
+                                     squeeze_value, trigger_value, trigger_touch,
+                                     stick,         stick_touch,   stick_dpad,
+                                     thumbrest,     poses,         haptic,
+                                     proximity,     meta_pro_own};
+constexpr Part meta_plus_profile[] = {faces,         face_touches,  menu_left_system_right,
+                                      squeeze_value, trigger_value, trigger_touch,
+                                      stick,         stick_touch,   stick_dpad,
+                                      thumbrest,     poses,         haptic,
+                                      proximity,     meta_plus_own};
+constexpr Part quest_2_profile[] = {faces,         face_touches,  menu_left_system_right,
+                                    squeeze_value, trigger_value, trigger_touch,
+                                    stick,         stick_touch,   stick_dpad,
+                                    thumbrest,     poses,         haptic,
+                                    proximity};
+constexpr Part quest_1_profile[] = {
+    faces,  face_touches, menu_left_system_right, squeeze_value, trigger_value, trigger_touch, stick, stick_touch, stick_dpad, poses,
+    haptic, proximity};
+constexpr Part cv1_profile[] = {faces,         face_touches,  menu_left_system_right,
+                                squeeze_value, trigger_value, trigger_touch,
+                                stick,         stick_touch,   stick_dpad,
+                                thumbrest,     poses,         haptic,
+                                proximity};
+constexpr Part touch_pro_profile[] = {
+    faces, face_touches, menu_left_system_right, squeeze_value, trigger_value, trigger_touch, stick, stick_touch, stick_dpad, thumbrest,
+    poses, haptic,       touch_pro_own};
+constexpr Part touch_plus_profile[] = {
+    faces, face_touches, menu_left_system_right, squeeze_value, trigger_value, trigger_touch, stick, stick_touch, stick_dpad, thumbrest,
+    poses, haptic,       touch_plus_own};
+constexpr Part pico_4_profile[] = {faces,         face_touches,      system_button, menu_left,     squeeze_click,
+                                   squeeze_value, trigger_click,     trigger_touch, trigger_value, stick,
+                                   stick_touch,   pad_dpad_of_stick, poses,         haptic};
+constexpr Part pico_neo3_profile[] = {faces,         face_touches,      system_button, menu,          squeeze_click,
+                                      squeeze_value, trigger_click,     trigger_touch, trigger_value, stick,
+                                      stick_touch,   pad_dpad_of_stick, poses,         haptic};
+constexpr Part focus3_profile[] = {faces,         menu_left_system_right,
+                                   squeeze_click, focus3_own,
+                                   squeeze_value, trigger_click,
+                                   trigger_touch, trigger_value,
+                                   stick,         stick_touch,
+                                   stick_dpad,    thumbrest,
+                                   poses,         haptic};
+constexpr Part cosmos_profile[] = {
+    faces, menu_left_system_right, shoulder, squeeze_click, trigger_click, trigger_value, stick, stick_touch, stick_dpad, poses, haptic};
+constexpr Part hp_profile[] = {faces, menu, squeeze_value, trigger_value, stick, stick_dpad, poses, haptic};
+constexpr Part odyssey_profile[] = {menu, squeeze_click, trigger_value, stick, stick_dpad, pad, pad_click, pad_dpad, poses, haptic};
+constexpr Part motion_profile[] = {menu, squeeze_click, trigger_value, stick, stick_dpad, pad, pad_click, pad_dpad, poses, haptic};
+constexpr Part ml2_profile[] = {menu, ml2_own, trigger_click, trigger_value, pad, pad_click, pad_force, pad_dpad, shoulder, poses, haptic};
+constexpr Part pico_g3_profile[] = {trigger_click, trigger_value, menu, g3_own, pad_dpad_of_stick, poses};
+constexpr Part simple_profile[] = {select, menu, poses, haptic};
+constexpr Part go_profile[] = {system_button, trigger_click, back, pad, pad_click, pad_dpad, poses};
+constexpr Part daydream_profile[] = {select, pad, pad_click, pad_dpad, poses};
+constexpr Part hand_profile[] = {hand_own, poses};
+constexpr Part vive_pro_profile[] = {vive_pro_components};
+constexpr Part xbox_profile[] = {xbox_components};
+constexpr Part eye_profile[] = {eye_components};
+
 constexpr Profile profiles[] = {
-    {"/interaction_profiles/valve/index_controller", "Valve Index Controller", index_components, 0},
-    {"/interaction_profiles/htc/vive_controller", "HTC Vive Controller", vive_components, 1},
-    {"/interaction_profiles/oculus/touch_controller", "Oculus Touch Controller", touch_components, 2},
-    {"/interaction_profiles/microsoft/motion_controller", "Microsoft Mixed Reality Motion Controller", motion_components, 3},
-    {"/interaction_profiles/khr/simple_controller", "Khronos Simple Controller", simple_components, 4},
-    {"/interaction_profiles/oculus/go_controller", "Oculus Go Controller", go_components, 5},
-    {"/interaction_profiles/google/daydream_controller", "Google Daydream Controller", daydream_components, 6},
-    {"/interaction_profiles/htc/vive_pro", "HTC Vive Pro", vive_pro_components, 0},
-    {"/interaction_profiles/microsoft/xbox_controller", "Microsoft Xbox Controller", xbox_components, 100},
-    {"/interaction_profiles/ext/eye_gaze_interaction", "Eye Tracker", eye_components, 0},
+    {"/interaction_profiles/valve/index_controller", "Valve Index Controller", index_profile, 0},
+    {"/interaction_profiles/htc/vive_controller", "HTC Vive Controller", vive_profile, 1},
+    {"/interaction_profiles/oculus/touch_controller", "Oculus Touch Controller", touch_profile, 2},
+    {"/interaction_profiles/meta/touch_pro_controller", "Meta Quest Touch Pro Controller", meta_pro_profile, 3, feature_1_1},
+    {"/interaction_profiles/meta/touch_plus_controller", "Meta Quest Touch Plus Controller", meta_plus_profile, 4, feature_1_1},
+    {"/interaction_profiles/meta/touch_controller_quest_2", "Quest 2 Controller", quest_2_profile, 5, feature_1_1},
+    {"/interaction_profiles/meta/touch_controller_quest_1_rift_s", "Quest / Rift S Controller", quest_1_profile, 6, feature_1_1},
+    {"/interaction_profiles/meta/touch_controller_rift_cv1", "Rift CV1 Controller", cv1_profile, 7, feature_1_1},
+    {"/interaction_profiles/facebook/touch_controller_pro", "Meta Quest Touch Pro Controller", touch_pro_profile, 8, feature_touch_pro},
+    {"/interaction_profiles/meta/touch_controller_plus", "Meta Quest Touch Plus Controller", touch_plus_profile, 9, feature_touch_plus},
+    {"/interaction_profiles/bytedance/pico4_controller", "Bytedance PICO 4 Controller", pico_4_profile, 10, feature_1_1 | feature_pico},
+    {"/interaction_profiles/bytedance/pico_neo3_controller", "Bytedance PICO Neo3 Controller", pico_neo3_profile, 11,
+     feature_1_1 | feature_pico},
+    {"/interaction_profiles/htc/vive_focus3_controller", "HTC VIVE Focus 3 Controller", focus3_profile, 12, feature_1_1 | feature_focus3},
+    {"/interaction_profiles/htc/vive_cosmos_controller", "HTC VIVE Cosmos Controller", cosmos_profile, 13, feature_1_1 | feature_cosmos},
+    {"/interaction_profiles/hp/mixed_reality_controller", "HP Mixed Reality Motion Controller", hp_profile, 14, feature_1_1 | feature_hp},
+    {"/interaction_profiles/samsung/odyssey_controller", "Samsung Odyssey Mixed Reality Motion Controller", odyssey_profile, 15,
+     feature_1_1 | feature_odyssey},
+    {"/interaction_profiles/microsoft/motion_controller", "Microsoft Mixed Reality Motion Controller", motion_profile, 16},
+    {"/interaction_profiles/ml/ml2_controller", "Magic Leap 2 Controller", ml2_profile, 17, feature_1_1 | feature_ml2},
+    {"/interaction_profiles/bytedance/pico_g3_controller", "Bytedance PICO G3 Controller", pico_g3_profile, 18, feature_1_1 | feature_pico},
+    {"/interaction_profiles/khr/simple_controller", "Khronos Simple Controller", simple_profile, 19},
+    {"/interaction_profiles/oculus/go_controller", "Oculus Go Controller", go_profile, 20},
+    {"/interaction_profiles/google/daydream_controller", "Google Daydream Controller", daydream_profile, 21},
+    {"/interaction_profiles/ext/hand_interaction_ext", "Hand", hand_profile, 22, feature_hand_interaction},
+    {"/interaction_profiles/htc/vive_pro", "HTC Vive Pro", vive_pro_profile, 0},
+    {"/interaction_profiles/microsoft/xbox_controller", "Microsoft Xbox Controller", xbox_profile, 100},
+    {"/interaction_profiles/ext/eye_gaze_interaction", "Eye Tracker", eye_profile, 0, feature_eye_gaze},
 };
 
 struct UserPathText {
@@ -204,7 +367,7 @@ int suitability(const Component& component, ComponentKind wanted) {
     const bool click = last == "/click", value = last == "/value", touch = last == "/touch";
     switch (wanted) {
         case ComponentKind::boolean:
-            return click ? 3 : value ? 2 : touch ? 0 : component.kind == ComponentKind::boolean ? 1 : 0;
+            return click ? 3 : value ? 2 : touch || is_dpad(component.source) ? 0 : component.kind == ComponentKind::boolean ? 1 : 0;
         case ComponentKind::scalar:
             return value ? 3 : click ? 2 : component.kind == ComponentKind::scalar ? 1 : 0;
         default:
@@ -261,22 +424,29 @@ std::string component_name(std::string_view below) {
     return name;
 }
 
-const Component* Profile::find(UserPath user, std::string_view below, ComponentKind wanted) const {
+const Component* Profile::find(UserPath user, std::string_view below, ComponentKind wanted, Features enabled) const {
     const Component* best = nullptr;
     int best_score = -1;
-    for (const Component& component : components) {
-        if ((component.users & bit(user)) == 0) continue;
-        const bool exact = component.path == below;
-        // "/input/thumbstick" is itself a component (a vector); an action of another type means its click or value.
-        if (exact && (component.kind != ComponentKind::vector2 || wanted == ComponentKind::vector2)) return &component;
-        if (!exact && identifier_of(component.path) != below) continue;
-        const int score = suitability(component, wanted);
-        if (score > best_score) {
-            best = &component;
-            best_score = score;
+    for (const std::span<const Component> part : parts) {
+        for (const Component& component : part) {
+            if ((component.users & bit(user)) == 0 || !available(component.needs, enabled)) continue;
+            const bool exact = component.path == below;
+            // "/input/thumbstick" is itself a component (a vector); an action of another type means its click or value.
+            if (exact && (component.kind != ComponentKind::vector2 || wanted == ComponentKind::vector2)) return &component;
+            if (!exact && identifier_of(component.path) != below) continue;
+            const int score = suitability(component, wanted);
+            if (score > best_score) {
+                best = &component;
+                best_score = score;
+            }
         }
     }
     return best;
+}
+
+bool Profile::serves(UserPath user) const {
+    const auto below = [user](const Component& component) { return (component.users & bit(user)) != 0; };
+    return std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return std::any_of(part.begin(), part.end(), below); });
 }
 
 std::span<const Profile> interaction_profiles() { return profiles; }
@@ -287,8 +457,6 @@ const Profile* find_profile(std::string_view path) {
     }
     return nullptr;
 }
-
-bool is_eye_gaze_profile(const Profile& profile) { return profile.components.data() == eye_components; }
 
 ComponentValue read_component(Source source, const ControllerState& state) {
     switch (source) {
@@ -320,6 +488,8 @@ ComponentValue read_component(Source source, const ControllerState& state) {
             return {unit(state.trackpad_touch || state.trackpad_click), 0};
         case Source::trackpad_force:
             return {unit(state.trackpad_click), 0};
+        case Source::ready:
+            return {unit(state.active), 0};
         case Source::a_click:
             return {unit(state.a_click), 0};
         case Source::b_click:
@@ -331,14 +501,9 @@ ComponentValue read_component(Source source, const ControllerState& state) {
         // A device that presents itself with a select button has no other trigger.
         case Source::select_click:
             return {state.select_click ? 1.0f : clean(state.trigger, 0), 0};
-        case Source::none:
-        case Source::grip:
-        case Source::aim:
-        case Source::gaze:
-        case Source::haptic:
-            break;
+        default:
+            return {};  // poses, outputs, what no device has; direction pads are made of other components
     }
-    return {};
 }
 
 }  // namespace entoptic::runtime

@@ -1,8 +1,9 @@
-// The interaction profiles of OpenXR 1.0 (and of XR_EXT_eye_gaze_interaction): which paths each has, and where the virtual devices
+// The interaction profiles of OpenXR 1.0 and 1.1 and of the extensions in objects/features.h: which paths each has, and where the devices
 // take their values from. Facts from the specification's registry.
 #pragma once
 
 #include "interfaces/sources.h"
+#include "runtime/objects/features.h"
 
 #include <cstdint>
 #include <optional>
@@ -43,34 +44,50 @@ enum class Source : std::uint8_t {
     menu_click,
     system_click,
     select_click,
+    ready,  // on while the device is there: a hand seen well enough to gesture
     grip,
     aim,
+    palm,
     gaze,
-    haptic
+    haptic,
+    // A direction pad made of a stick or pad (XR_EXT_dpad_binding).
+    stick_up,
+    stick_down,
+    stick_left,
+    stick_right,
+    pad_up,
+    pad_down,
+    pad_left,
+    pad_right,
+    pad_center
 };
+constexpr bool is_dpad(Source source) { return source >= Source::stick_up; }
 
 struct Component {
     std::string_view path;  // below the user path: "/input/trigger/value"
     ComponentKind kind;
     Source source;
     std::uint8_t users;  // bit 1 << UserPath
+    Features needs = 0;  // any of them makes it available; 0: there for everyone who has the profile
 };
 
 struct Profile {
-    std::string_view path;  // "/interaction_profiles/valve/index_controller"
-    std::string_view name;  // for people
-    std::span<const Component> components;
-    int preference;  // the virtual controllers take the lowest that the application suggests; 100: never
+    std::string_view path;                              // "/interaction_profiles/valve/index_controller"
+    std::string_view name;                              // for people
+    std::span<const std::span<const Component>> parts;  // its components, in groups that profiles share
+    int preference;                                     // hand controllers take the lowest that the application suggests; 100: never
+    Features needs = 0;                                 // any of them makes it available
 
     // The component that a binding path below `user` names: exact, or by its identifier alone ("/input/trigger"), where the component
-    // is chosen to suit `wanted`. Null when the profile has no such path.
-    const Component* find(UserPath user, std::string_view below, ComponentKind wanted) const;
+    // is chosen to suit `wanted`. Null when the profile has no such path with these features.
+    const Component* find(UserPath user, std::string_view below, ComponentKind wanted, Features enabled) const;
+    // True when some component lies below this user path.
+    bool serves(UserPath user) const;
 };
 
-// Every profile; the eye gaze profile is the last and belongs to the extension.
 std::span<const Profile> interaction_profiles();
+// Also those that the application's features do not make available.
 const Profile* find_profile(std::string_view path);
-bool is_eye_gaze_profile(const Profile& profile);
 
 // "/user/hand/left/input/trigger/value" in its user path and the rest. Nothing when it does not begin with a known user path.
 struct SplitPath {

@@ -65,16 +65,42 @@ void Session::announce() {
     enter(XR_SESSION_STATE_READY);
 }
 
-Outcome Session::begin() {
+Outcome Session::begin(XrViewConfigurationType views) {
     std::lock_guard lock(mutex_);
     if (running_) return error(XR_ERROR_SESSION_RUNNING, "the session runs already");
     if (state_ != XR_SESSION_STATE_READY || retired_) {
         return error(XR_ERROR_SESSION_NOT_READY, "the session is not in XR_SESSION_STATE_READY; wait for that event");
     }
     running_ = true;
+    views_ = views;
     ++run_;
     host().frames().begin_session();
+    if (PresenceSource* presence = host().headset().presence) tell_presence(presence->user_present());
+    if (!graphics_) {
+        for (const auto state : {XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED}) enter(state);
+    }
     return XR_SUCCESS;
+}
+
+XrViewConfigurationType Session::view_configuration() const {
+    std::lock_guard lock(mutex_);
+    return views_;
+}
+
+void Session::tell_presence(bool present) {
+    told_presence_ = present;
+    if (!instance_->enabled(XR_EXT_USER_PRESENCE_EXTENSION_NAME)) return;
+    const XrEventDataUserPresenceChangedEXT event{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, xr(), XrBool32(present)};
+    instance_->events().push(xr(), event);
+}
+
+void Session::follow_host() {
+    PresenceSource* presence = host().headset().presence;
+    const bool present = presence && presence->user_present();
+    std::lock_guard lock(mutex_);
+    if (!running_) return;
+    if (presence && told_presence_ != present) tell_presence(present);
+    if (!exiting_ && host().frames().exit_wanted()) stop();
 }
 
 void Session::drop_frames() {
@@ -115,11 +141,6 @@ Outcome Session::request_exit() {
     return XR_SUCCESS;
 }
 
-void Session::check_exit() {
-    std::lock_guard lock(mutex_);
-    if (running_ && !exiting_ && host().frames().exit_wanted()) stop();
-}
-
 void Session::advance_after_frame() {
     if (state_ == XR_SESSION_STATE_READY) {
         enter(XR_SESSION_STATE_SYNCHRONIZED);
@@ -149,7 +170,7 @@ Outcome Session::wait_frame(XrFrameState& state) {
     }
     state.predictedDisplayTime = timing.predicted_display_time;
     state.predictedDisplayPeriod = timing.period;
-    check_exit();
+    follow_host();
     return XR_SUCCESS;
 }
 
@@ -184,7 +205,7 @@ Outcome Session::end_frame(const std::function<Outcome(FrameSubmission&)>& resol
         host().frames().submit_frame(std::move(submission));
         advance_after_frame();
     }
-    check_exit();
+    follow_host();
     return XR_SUCCESS;
 }
 

@@ -2,6 +2,7 @@
 // block without a lock that other calls need.
 //
 //   IDLE → READY → (begin) → SYNCHRONIZED and VISIBLE with the first finished frame → FOCUSED with the second
+//   without graphics (XR_MND_headless): all three at begin, for such an application need not submit frames
 //   exit wanted: → VISIBLE → SYNCHRONIZED → STOPPING → (end) → IDLE → EXITING
 #pragma once
 
@@ -27,7 +28,8 @@ public:
 
     XrSession xr() const { return to_handle<XrSession>(handle()); }
     RuntimeHost& host() const;
-    GraphicsDevice& graphics() { return *graphics_; }
+    // Null for a headless session.
+    GraphicsDevice* graphics() { return graphics_.get(); }
     ActionInput& input() { return input_; }
     bool focused() const;
     // LOCAL's origin: where the head was when the session was made, level with gravity.
@@ -36,13 +38,15 @@ public:
     // Tells IDLE and READY. Once, when the handle exists.
     void announce();
     // XR_ERROR_SESSION_RUNNING, XR_ERROR_SESSION_NOT_READY.
-    Outcome begin();
+    Outcome begin(XrViewConfigurationType views);
+    // What the session was begun with; stereo before.
+    XrViewConfigurationType view_configuration() const;
     // XR_ERROR_SESSION_NOT_RUNNING, XR_ERROR_SESSION_NOT_STOPPING.
     Outcome end();
     // XR_ERROR_SESSION_NOT_RUNNING.
     Outcome request_exit();
-    // Follows the host's wish to stop.
-    void check_exit();
+    // Follows the host's wish to stop, and tells when the headset was put on or taken off.
+    void follow_host();
 
     Outcome wait_frame(XrFrameState& state);
     // XR_FRAME_DISCARDED when the frame begun before was never ended.
@@ -55,6 +59,7 @@ private:
     void advance_after_frame();        // with mutex_
     void stop();                       // with mutex_
     void drop_frames();                // with mutex_
+    void tell_presence(bool present);  // with mutex_
     bool renders() const { return state_ == XR_SESSION_STATE_VISIBLE || state_ == XR_SESSION_STATE_FOCUSED; }
 
     const std::shared_ptr<Instance> instance_;
@@ -65,6 +70,8 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable frame_begun_;
     XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
+    XrViewConfigurationType views_ = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    std::optional<bool> told_presence_;  // what the application knows
     bool running_ = false;
     bool exiting_ = false;  // asked to; leads to EXITING
     bool retired_ = false;

@@ -37,6 +37,13 @@ glm::quat looking_along(glm::vec3 direction) {
     return glm::angleAxis(yaw, glm::vec3(0, 1, 0)) * glm::angleAxis(pitch, glm::vec3(1, 0, 0));
 }
 
+// The palm (grip_surface, palm_ext) in the grip. choice: a handle of 3 cm, whose axis the outstretched fingers meet at 60 degrees; no device
+// here measures it. Axes as the specification's "Standard pose identifiers" has them.
+Pose grip_from_palm(UserPath user) {
+    const float side = user == UserPath::left_hand ? -0.015f : 0.015f;
+    return {glm::angleAxis(glm::radians(-60.0f), glm::vec3(1, 0, 0)), glm::vec3(side, 0, 0)};
+}
+
 }  // namespace
 
 Space::Space(std::shared_ptr<Session> session, XrReferenceSpaceType reference, Pose root_from_space)
@@ -64,6 +71,9 @@ bool Space::same_root(const Space& other) const {
 PoseState Space::world_from_device(TimeNs time, TimeNs* gaze_sample_time) const {
     const std::optional<PoseRoot> root = pose_root();
     if (!root) return {};
+    if (const auto device = session_->input().overrides().device(root->user)) {
+        return device->active ? world_from_override(*root, time) : PoseState{};
+    }
     Headset& headset = session_->host().headset();
     if (root->source == Source::gaze) {
         const Observer observer = headset.eye_tracker->observer_at(time);
@@ -82,16 +92,35 @@ PoseState Space::world_from_device(TimeNs time, TimeNs* gaze_sample_time) const 
     if (!controller) return {};
     const ControllerState state = controller->state_at(time);
     if (!state.active) return {};
+    if (root->source == Source::palm) return attached(state.grip, grip_from_palm(root->user));
     return root->source == Source::grip ? state.grip : state.aim;
+}
+
+// A pose of a device that the application plays: where it put it; else the palm by the grip; else in front of LOCAL's origin.
+PoseState Space::world_from_override(const PoseRoot& root, TimeNs time) const {
+    const auto location = session_->input().overrides().location(std::string(user_path_text(root.user)) + std::string(root.component));
+    if (location) {
+        return location->head_locked ? attached(session_->host().headset().head->pose_at(time), location->pose) : fixed(location->pose);
+    }
+    if (root.source == Source::palm) {
+        return attached(world_from_override({root.user, Source::grip, "/input/grip/pose"}, time), grip_from_palm(root.user));
+    }
+    const float side = root.user == UserPath::left_hand ? -0.2f : 0.2f;
+    return fixed(session_->world_from_local() * Pose{glm::quat(1, 0, 0, 0), glm::vec3(side, -0.2f, -0.4f)});
 }
 
 PoseState Space::world_from_root(TimeNs time, TimeNs* gaze_sample_time) const {
     if (action_) return world_from_device(time, gaze_sample_time);
-    switch (reference_) {
+    switch (static_cast<int>(reference_)) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return session_->host().headset().head->pose_at(time);
         case XR_REFERENCE_SPACE_TYPE_STAGE:
             return fixed({});
+        case XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR: {
+            Pose floor = session_->world_from_local();
+            floor.position.y = 0;  // the world's origin is on the floor
+            return fixed(floor);
+        }
         default:
             return fixed(session_->world_from_local());
     }

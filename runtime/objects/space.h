@@ -35,6 +35,7 @@ public:
 private:
     PoseState world_from_root(TimeNs time, TimeNs* gaze_sample_time) const;
     PoseState world_from_device(TimeNs time, TimeNs* gaze_sample_time) const;
+    PoseState world_from_override(const PoseRoot& root, TimeNs time) const;
     std::optional<PoseRoot> pose_root() const;
 
     const std::shared_ptr<Session> session_;

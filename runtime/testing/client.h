@@ -17,21 +17,22 @@
 #include <string>
 #include <vector>
 
-#define ENTOPTIC_CORE_FUNCTIONS(X)                                                                                                        \
-    X(xrEnumerateApiLayerProperties)                                                                                                      \
-    X(xrEnumerateInstanceExtensionProperties)                                                                                             \
-    X(xrCreateInstance)                                                                                                                   \
-    X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString) X(xrGetSystem)          \
-        X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession) X(xrEnumerateReferenceSpaces) \
-            X(xrCreateReferenceSpace) X(xrGetReferenceSpaceBoundsRect) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace)          \
-                X(xrEnumerateViewConfigurations) X(xrGetViewConfigurationProperties) X(xrEnumerateViewConfigurationViews)                 \
-                    X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain) X(xrEnumerateSwapchainImages)               \
-                        X(xrAcquireSwapchainImage) X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage) X(xrBeginSession) X(xrEndSession)   \
-                            X(xrRequestExitSession) X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame) X(xrLocateViews) X(xrStringToPath)       \
-                                X(xrPathToString) X(xrCreateActionSet) X(xrDestroyActionSet) X(xrCreateAction) X(xrDestroyAction)         \
-                                    X(xrSuggestInteractionProfileBindings) X(xrAttachSessionActionSets) X(xrGetCurrentInteractionProfile) \
-                                        X(xrGetActionStateBoolean) X(xrGetActionStateFloat) X(xrGetActionStateVector2f)                   \
-                                            X(xrGetActionStatePose) X(xrSyncActions) X(xrEnumerateBoundSourcesForAction)                  \
+#define ENTOPTIC_CORE_FUNCTIONS(X)                                                                                                         \
+    X(xrEnumerateApiLayerProperties)                                                                                                       \
+    X(xrEnumerateInstanceExtensionProperties)                                                                                              \
+    X(xrCreateInstance)                                                                                                                    \
+    X(xrDestroyInstance)                                                                                                                   \
+    X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString) X(xrGetSystem) X(xrGetSystemProperties)       \
+        X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession) X(xrEnumerateReferenceSpaces) X(xrCreateReferenceSpace) \
+            X(xrGetReferenceSpaceBoundsRect) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace) X(xrEnumerateViewConfigurations)    \
+                X(xrGetViewConfigurationProperties) X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats)                    \
+                    X(xrCreateSwapchain) X(xrDestroySwapchain) X(xrEnumerateSwapchainImages) X(xrAcquireSwapchainImage)                    \
+                        X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage) X(xrBeginSession) X(xrEndSession) X(xrRequestExitSession)       \
+                            X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame) X(xrLocateViews) X(xrStringToPath) X(xrPathToString)              \
+                                X(xrCreateActionSet) X(xrDestroyActionSet) X(xrCreateAction) X(xrDestroyAction)                            \
+                                    X(xrSuggestInteractionProfileBindings) X(xrAttachSessionActionSets) X(xrGetCurrentInteractionProfile)  \
+                                        X(xrGetActionStateBoolean) X(xrGetActionStateFloat) X(xrGetActionStateVector2f)                    \
+                                            X(xrGetActionStatePose) X(xrSyncActions) X(xrEnumerateBoundSourcesForAction)                   \
                                                 X(xrGetInputSourceLocalizedName) X(xrApplyHapticFeedback) X(xrStopHapticFeedback)
 
 namespace entoptic::runtime::testing {
@@ -51,21 +52,22 @@ inline PFN_xrGetInstanceProcAddr negotiated(RuntimeHostFactory factory = &FakeHo
 }
 
 inline const std::vector<const char*>& all_extensions() {
-    static const std::vector<const char*> names{"XR_KHR_vulkan_enable",         "XR_KHR_vulkan_enable2",
-                                                "XR_EXT_debug_utils",           "XR_EXT_eye_gaze_interaction",
-                                                "XR_KHR_composition_layer_depth", "XR_KHR_convert_timespec_time",
-                                                "XR_ENTOPTICX_scene_luminance"};
+    static const std::vector<const char*> names{
+        "XR_KHR_vulkan_enable",           "XR_KHR_vulkan_enable2",        "XR_EXT_debug_utils",          "XR_EXT_eye_gaze_interaction",
+        "XR_KHR_composition_layer_depth", "XR_KHR_convert_timespec_time", "XR_ENTOPTICX_scene_luminance"};
     return names;
 }
 
 // One instance with its fake host.
 class Client {
 public:
-    explicit Client(const std::vector<const char*>& extensions = all_extensions(), const void* chain = nullptr) : get_proc(negotiated()) {
+    explicit Client(const std::vector<const char*>& extensions = all_extensions(), const void* chain = nullptr,
+                    XrVersion version = XR_MAKE_VERSION(1, 0, 0))
+        : get_proc(negotiated()) {
         load();
         XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO, chain};
         std::strcpy(info.applicationInfo.applicationName, "test");
-        info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+        info.applicationInfo.apiVersion = version;
         info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
         info.enabledExtensionNames = extensions.data();
         EXPECT_EQ(xrCreateInstance(&info, &instance), XR_SUCCESS);
@@ -176,6 +178,8 @@ public:
 // An instance, a device, a session; helpers for the frame loop. Base of the conformance tests.
 class SessionTest : public ::testing::Test {
 public:
+    SessionTest() = default;
+    SessionTest(const std::vector<const char*>& extensions, XrVersion version) : xr(extensions, nullptr, version) {}
     void SetUp() override { session = make_session(); }
     void TearDown() override {
         if (session) { EXPECT_EQ(xr.xrDestroySession(session), XR_SUCCESS); }
@@ -254,7 +258,7 @@ public:
     }
     XrTime now() const { return xr.host->clock().now(); }
 
-    Client xr;
+    Client xr{all_extensions()};
     VulkanApplication vulkan{xr};
     XrSession session = XR_NULL_HANDLE;
 };
