@@ -141,6 +141,8 @@ std::string FramePath::collect(const FrameDescription& frame, const ImageUse& im
     std::string problem;
     for (int eye = 0; eye < eye_count; ++eye) {
         const EyePlace place{frame.world_from_head, frame.head_from_eye[std::size_t(eye)]};
+        // The same lens: the one with fewer pixels decides which layers have to be averaged.
+        const EyeGeometry& coarser = (options_.eye_scale < 1 ? eye_geometry_ : panel_geometry_)[std::size_t(eye)];
         for (const Layer& layer : frame.layers) {
             const SubImage& sub = layer.views[layer.kind == LayerKind::projection ? std::size_t(eye) : 0].image;
             if (sub.width <= 0 || sub.height <= 0) continue;
@@ -149,9 +151,13 @@ std::string FramePath::collect(const FrameDescription& frame, const ImageUse& im
                 problem = image.error().message;
                 continue;
             }
-            const auto view = layer_view(layer, eye, place, panel_geometry_[std::size_t(eye)], image->is_float);
+            const auto view = layer_view(layer, eye, place, coarser, image->is_float);
             if (!view) continue;
-            layers_.add(eye, *view, *image);
+            if (!layers_.add(eye, *view, *image)) {
+                problem = fmt::format(
+                    "An eye sees more than {} layers (an inset and each face of a cube count); those in front are left out.", layer_slots);
+                continue;
+            }
             if (!with_depth) continue;
             if (const auto added = collect_depth(layer, eye, place, images, *image); !added) problem = added.error().message;
         }
@@ -160,7 +166,8 @@ std::string FramePath::collect(const FrameDescription& frame, const ImageUse& im
     return problem;
 }
 
-Result<void> FramePath::collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images, const SampledImage& colour) {
+Result<void> FramePath::collect_depth(const Layer& layer, int eye, const EyePlace& place, const ImageUse& images,
+                                      const SampledImage& colour) {
     auto depth = depth_layer(layer, eye, place, panel_geometry_[std::size_t(eye)]);
     if (!depth) return {};
     if ((depth->flags & depth_sampled) == 0) {
@@ -197,7 +204,9 @@ PanelCurve FramePath::curve(const FrameDescription& frame) const {
             options_.dither && !codes_pass ? dither_amplitude : 0.0f, static_cast<std::uint32_t>(frame.index)};
 }
 
-bool FramePath::is_ordinary() const { return stage_ && stage_->obeys_residual_law() && stage_->at_rest() && layers_.within(options_.display); }
+bool FramePath::is_ordinary() const {
+    return stage_ && stage_->obeys_residual_law() && stage_->at_rest() && layers_.within(options_.display);
+}
 
 Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const ImageUse& images, const WantedPictures& wanted) {
     CpuTimes times(options_.stopwatch);

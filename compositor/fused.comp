@@ -7,7 +7,7 @@
 #include "compositor/layers.glsl"
 #include "compositor/panel.glsl"
 
-layout(local_size_x_id = 3, local_size_y_id = 4) in;
+layout(local_size_x_id = 4, local_size_y_id = 5) in;
 
 layout(scalar, binding = 3) writeonly buffer Codes { uint codes[]; };
 layout(scalar, binding = 4) buffer Cleaned { uint cleaned[]; };   // pixels of each eye
@@ -31,13 +31,13 @@ void main() {
     const vec2 px = vec2(pixel) + 0.5;
     bool changed = false;
     const vec3 green = lens_coordinates(view, 1, px);
-    vec3 light = compose_layers(view, 1, green, changed);
+    vec3 light = compose_layers(view, 1, px, green, changed);
     const vec3 cutoff = geometry[view].r2_cutoff;
     bvec3 shown = bvec3(shows(green, cutoff.g));
     if (!achromatic) {
         const vec3 red = lens_coordinates(view, 0, px), blue = lens_coordinates(view, 2, px);
-        light.r = compose_layers(view, 0, red, changed).r;
-        light.b = compose_layers(view, 2, blue, changed).b;
+        light.r = compose_layers(view, 0, px, red, changed).r;
+        light.b = compose_layers(view, 2, px, blue, changed).b;
         shown = bvec3(shows(red, cutoff.r), shown.g, shows(blue, cutoff.b));
         if (lens_near_edge(geometry[view], px) && any(shown))
             shown = bvec3(lens_shows(geometry[view], 0, px), lens_shows(geometry[view], 1, px), lens_shows(geometry[view], 2, px));

@@ -31,7 +31,7 @@ void main() {
         const float sr = solid_angle[at] * float(extent.x * extent.y) / float(glance_columns * glance_rows);
         if (!(sr > 0.0)) continue;
         bool changed = false;
-        const vec3 light = compose_layers(view, 1, lens_coordinates(view, 1, vec2(pixel) + 0.5), changed);
+        const vec3 light = compose_layers(view, 1, vec2(pixel) + 0.5, lens_coordinates(view, 1, vec2(pixel) + 0.5), changed);
         scene[at] = scene_pixel(light, true, false);
         const float y = luminance(light);
         tile.sum_y_sr += y * sr;

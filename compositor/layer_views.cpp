@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <glm/gtc/quaternion.hpp>
 
 namespace entoptic::compositor {
@@ -71,7 +72,148 @@ vec3 through_lens(const glm::dvec3& row, const EyeGeometry& g, const LensChannel
 uint flags_of(const Layer& layer, bool is_float) {
     return (layer.blend_texture_source_alpha ? layer_blends : 0u) |
            (layer.blend_texture_source_alpha && layer.unpremultiplied_alpha ? layer_unpremultiplied : 0u) |
-           (is_float ? layer_is_float : 0u);
+           (is_float ? layer_is_float : 0u) | (layer.tint == LayerTint{} ? 0u : layer_tinted) |
+           (layer.replaces_previous ? layer_replaces : 0u);
+}
+
+bool is_curved(LayerKind kind) { return kind == LayerKind::cylinder || kind == LayerKind::equirect; }
+
+void copy_tint(const LayerTint& tint, LayerView& view) {
+    for (int i = 0; i < 4; ++i) {
+        view.colour_scale[i] = tint.scale[std::size_t(i)];
+        view.colour_bias[i] = tint.bias[std::size_t(i)];
+    }
+}
+
+// Directions in the surface's axes, and the rest of the way to a texel in `view` (compositor/layer_view.h).
+std::optional<DirectionMap> curved_map(const Layer& layer, const SubImage& image, const DoublePose& eye, LayerView& view) {
+    const CurvedSurface& surface = layer.surface;
+    const bool cylinder = layer.kind == LayerKind::cylinder;
+    const double up = cylinder ? double(surface.height_m) : double(surface.latitude_top) - double(surface.latitude_bottom);
+    const double turn = surface.longitude_extent;
+    if (!(turn > 0) || !(up > 0) || !std::isfinite(up)) return std::nullopt;
+    const DoublePose from_eye = inverse(as_double(surface.space_from_centre)) * eye;
+    const bool infinite = !(surface.radius_m > 0) || !std::isfinite(surface.radius_m);
+    view.origin = infinite ? vec3(0) : vec3(from_eye.position);
+    view.radius = infinite ? 1.0f : surface.radius_m;
+    const double top = cylinder ? up / 2 : double(surface.latitude_top);
+    view.texel_scale = {static_cast<float>(image.width / turn), static_cast<float>(-image.height / up)};
+    view.texel_bias = {static_cast<float>(image.x + image.width * (0.5 - double(surface.longitude_centre) / turn)),
+                       static_cast<float>(image.y + image.height * top / up)};
+    view.flags |= cylinder ? layer_cylinder : layer_sphere;
+    const auto d = rows_of(from_eye.orientation);
+    return DirectionMap{d[0], d[1], d[2]};
+}
+
+std::optional<DirectionMap> direction_map(const Layer& layer, const entoptic::LayerView& source, const DoublePose& eye, LayerView& view) {
+    switch (layer.kind) {
+        case LayerKind::projection:
+            return projection_map(source, eye);
+        case LayerKind::quad:
+            return quad_map(layer, source.image, eye);
+        default:
+            return curved_map(layer, source.image, eye, view);
+    }
+}
+
+// choice: bilinear interpolation reads every texel while a pixel's neighbours look no more than two texels on.
+constexpr double footprint_without_averaging = 2;
+constexpr int footprint_grid = 9;  // points a side at which the footprint is looked at
+
+// Position on the panel about the green lens's optical centre at which a direction is seen: the radius that the distortion takes there.
+glm::dvec2 lens_point(const EyeGeometry& g, glm::dvec2 tangents) {
+    const LensChannel& c = g.channels[1];
+    const glm::dvec2 shown{tangents.x * double(g.focal.x) - double(g.principal_point.x) - double(c.centre.x),
+                           (double(g.principal_point.y) - tangents.y * double(g.focal.y)) / double(g.aspect) - double(c.centre.y)};
+    const double target = glm::length(shown);
+    if (target == 0) return shown;
+    const auto gain = [&](double r) {
+        const double r2 = r * r;
+        return r / (1 + r2 * (double(c.coefficients.x) + r2 * (double(c.coefficients.y) + r2 * double(c.coefficients.z))));
+    };
+    double low = 0, high = std::sqrt(std::max(double(g.r2_cutoff.y), 1e-6));
+    for (int i = 0; i < 30; ++i) (gain((low + high) / 2) < target ? low : high) = (low + high) / 2;
+    return shown * (low / target);
+}
+
+std::optional<glm::dvec2> texel_at(const LayerView& view, const EyeGeometry& g, glm::dvec2 p) {
+    const glm::dvec3 k(g.channels[1].coefficients);
+    const double r2 = glm::dot(p, p);
+    const glm::dvec3 at(p, 1 + r2 * (k.x + r2 * (k.y + r2 * k.z)));
+    const glm::dvec3 h{glm::dot(glm::dvec3(view.texel_from_lens[3]), at), glm::dot(glm::dvec3(view.texel_from_lens[4]), at),
+                       glm::dot(glm::dvec3(view.texel_from_lens[5]), at)};
+    if ((view.flags & (layer_cylinder | layer_sphere)) != 0) {  // as if from the middle: a footprint need not be exact
+        const glm::dvec3 d = glm::normalize(h);
+        const double along = (view.flags & layer_sphere) != 0 ? std::asin(d.y) : double(view.radius) * d.y / std::hypot(d.x, d.z);
+        return glm::dvec2(std::atan2(d.x, -d.z), along) * glm::dvec2(view.texel_scale) + glm::dvec2(view.texel_bias);
+    }
+    if (!(h.z > 0)) return std::nullopt;
+    return glm::dvec2(h) / h.z;
+}
+
+// Texels from a pixel to its farther neighbour, where the layer is seen; else 0.
+double footprint_at(const LayerView& view, const EyeGeometry& g, glm::dvec2 p) {
+    const auto here = texel_at(view, g, p);
+    const auto right = texel_at(view, g, p + glm::dvec2(2.0 / g.width, 0));
+    const auto below = texel_at(view, g, p + glm::dvec2(0, 2.0 / (double(g.height) * double(g.aspect))));
+    if (!here || !right || !below) return 0;
+    const bool seen =
+        here->x >= double(view.low.x) && here->y >= double(view.low.y) && here->x <= double(view.high.x) && here->y <= double(view.high.y);
+    if (!seen) return 0;
+    const double across = glm::length(*right - *here), down = glm::length(*below - *here);
+    const double back = 3 * std::abs(double(view.texel_scale.x));  // half a turn of a curved layer: its seam
+    return (back > 0 && across > back) || !(std::max(across, down) < 1e9) ? 0 : std::max(across, down);
+}
+
+// The largest of a grid over the panel and, for what may lie between its points, of the layer's own middle and corners.
+double largest_footprint(const LayerView& view, const EyeGeometry& g, const DirectionMap& map) {
+    double largest = 0;
+    for (int i = 0; i < footprint_grid * footprint_grid; ++i) {
+        const glm::dvec2 uv{(i % footprint_grid + 0.5) / footprint_grid, (i / footprint_grid + 0.5) / footprint_grid};
+        const glm::dvec2 p{2 * uv.x - 1 - double(g.channels[1].centre.x),
+                           (2 * uv.y - 1) / double(g.aspect) - double(g.channels[1].centre.y)};
+        if (glm::dot(p, p) <= double(g.r2_cutoff.y)) largest = std::max(largest, footprint_at(view, g, p));
+    }
+    if ((view.flags & (layer_cylinder | layer_sphere)) != 0) return largest;
+    const glm::dmat3 direction_from_texel = glm::inverse(glm::transpose(glm::dmat3(map.x, map.y, map.w)));
+    for (const glm::dvec2 part :
+         {glm::dvec2(0.5), glm::dvec2(0.1, 0.1), glm::dvec2(0.9, 0.1), glm::dvec2(0.1, 0.9), glm::dvec2(0.9, 0.9)}) {
+        const glm::dvec2 texel = glm::mix(glm::dvec2(view.low), glm::dvec2(view.high), part);
+        const glm::dvec3 direction = direction_from_texel * glm::dvec3(texel, 1);
+        if (direction.z < -1e-9) largest = std::max(largest, footprint_at(view, g, lens_point(g, glm::dvec2(direction) / -direction.z)));
+    }
+    return largest;
+}
+
+// Tangents of a box about everything that the lens shows, with a tenth to spare for the other colours.
+glm::dvec2 widest_tangents(const EyeGeometry& g) {
+    const LensChannel& c = g.channels[1];
+    glm::dvec2 widest(0);
+    for (int i = 0; i < 32; ++i) {
+        const double angle = i * 0.19634954084936207;  // a sixteenth of pi
+        glm::dvec2 p{std::cos(angle), std::sin(angle)};
+        const glm::dvec2 edge{1 + std::abs(double(c.centre.x)), 1 / double(g.aspect) + std::abs(double(c.centre.y))};
+        p *= std::min({std::sqrt(double(g.r2_cutoff.y)), edge.x / std::max(std::abs(p.x), 1e-9), edge.y / std::max(std::abs(p.y), 1e-9)});
+        const double r2 = glm::dot(p, p);
+        const double gain = 1 / (1 + r2 * (double(c.coefficients.x) + r2 * (double(c.coefficients.y) + r2 * double(c.coefficients.z))));
+        widest.x =
+            std::max(widest.x, (std::abs(p.x * gain + double(c.centre.x)) + std::abs(double(g.principal_point.x))) / double(g.focal.x));
+        widest.y =
+            std::max(widest.y, (std::abs(p.y * gain + double(c.centre.y)) * double(g.aspect) + std::abs(double(g.principal_point.y))) /
+                                   double(g.focal.y));
+    }
+    return widest * 1.1;
+}
+
+// True when everything that the eye can see lies on the outer side of one edge of the layer's sub-image, or behind it.
+bool out_of_sight(const DirectionMap& map, const LayerView& view, const EyeGeometry& g) {
+    const glm::dvec2 widest = widest_tangents(g);
+    const glm::dvec3 sides[] = {map.w, map.x - double(view.low.x) * map.w, double(view.high.x) * map.w - map.x,
+                                map.y - double(view.low.y) * map.w, double(view.high.y) * map.w - map.y};
+    return std::any_of(std::begin(sides), std::end(sides), [&](const glm::dvec3& side) {
+        // Linear in the tangents: largest in a corner.
+        return std::abs(side.x) * widest.x + std::abs(side.y) * widest.y - side.z < 0;
+    });
 }
 
 bool hidden_from(const Layer& layer, int eye) { return layer.visibility == (eye == 0 ? EyeVisibility::right : EyeVisibility::left); }
@@ -83,7 +225,7 @@ std::optional<LayerView> layer_view(const Layer& layer, int eye, const EyePlace&
     if (hidden_from(layer, eye) || source.image.width <= 0 || source.image.height <= 0) return std::nullopt;
     LayerView view{};
     const DoublePose from_eye = space_from_eye(layer, place);
-    const auto map = layer.kind == LayerKind::projection ? projection_map(source, from_eye) : quad_map(layer, source.image, from_eye);
+    const auto map = direction_map(layer, source, from_eye, view);
     if (!map) return std::nullopt;
     for (std::size_t c = 0; c < 3; ++c) {
         view.texel_from_lens[3 * c] = through_lens(map->x, geometry, geometry.channels[c]);
@@ -96,7 +238,10 @@ std::optional<LayerView> layer_view(const Layer& layer, int eye, const EyePlace&
     view.clamp_high = view.high - 0.5f;
     view.cd_per_unit = layer.luminance.cd_per_unit;
     view.offset_cd = layer.luminance.offset_cd;
-    view.flags = flags_of(layer, is_float);
+    view.flags |= flags_of(layer, is_float);
+    copy_tint(layer.tint, view);
+    if (!is_curved(layer.kind) && out_of_sight(*map, view, geometry)) return std::nullopt;
+    if (largest_footprint(view, geometry, *map) > footprint_without_averaging) view.flags |= layer_minified;
     return view;
 }
 
@@ -123,6 +268,7 @@ double plane_distance(const Layer& layer, const EyePlace& place) {
 }  // namespace
 
 std::optional<DepthLayer> depth_layer(const Layer& layer, int eye, const EyePlace& place, const EyeGeometry& geometry) {
+    if (is_curved(layer.kind)) return std::nullopt;
     const auto colour = layer_view(layer, eye, place, geometry, false);
     if (!colour) return std::nullopt;
     DepthLayer into{};

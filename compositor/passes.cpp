@@ -163,19 +163,26 @@ bool LayerTable::within(const perception::DisplayRange& display) const {
     if (has_float_) return false;
     for (const auto& views : views_)
         for (const LayerView& view : views)
-            if (!(view.offset_cd >= 0.999f * display.black_cd_m2 && view.cd_per_unit >= 0 && view.cd_per_unit + view.offset_cd <= 1.000001f * display.white_cd_m2))
+            if ((view.flags & layer_tinted) != 0 || !(view.offset_cd >= 0.999f * display.black_cd_m2 && view.cd_per_unit >= 0 &&
+                                                      view.cd_per_unit + view.offset_cd <= 1.000001f * display.white_cd_m2))
                 return false;
     return true;
 }
 
-void LayerTable::add(int eye, const LayerView& view, const SampledImage& image) {
+bool LayerTable::is_special(int eye) const {
+    const auto& views = views_[std::size_t(eye)];
+    return std::any_of(views.begin(), views.end(), [](const LayerView& view) { return (view.flags & layer_special) != 0; });
+}
+
+bool LayerTable::add(int eye, const LayerView& view, const SampledImage& image) {
     auto& views = views_[std::size_t(eye)];
-    if (views.size() >= layer_slots) return;
+    if (views.size() >= layer_slots) return false;
     views.push_back(view);
     images_[std::size_t(eye)].push_back(image.view);
     has_float_ = has_float_ || image.is_float;
     only_srgb8_ = only_srgb8_ && image.is_srgb8;
     if (std::find(unique_.begin(), unique_.end(), image.image) == unique_.end()) unique_.push_back(image.image);
+    return true;
 }
 
 void LayerTable::upload() {
@@ -203,18 +210,19 @@ LayerKernels::LayerKernels(gpu::Device& device, std::string name, std::span<cons
       more_constants_(std::move(more_constants)),
       more_buffers_(more_buffers) {}
 
-Result<const gpu::Kernel*> LayerKernels::get(std::uint32_t layers, bool clean_values) {
-    const std::uint32_t slots = *std::lower_bound(slot_counts.begin(), slot_counts.end(), std::min(layers, layer_slots));
-    auto& kernel = kernels_[{slots, clean_values}];
+Result<const gpu::Kernel*> LayerKernels::get(const LayerTable& layers, int eye) {
+    const std::uint32_t slots = *std::lower_bound(slot_counts.begin(), slot_counts.end(), std::min(layers.count(eye), layer_slots));
+    const bool clean_values = layers.has_float(), special = layers.is_special(eye);
+    auto& kernel = kernels_[{slots, clean_values, special}];
     if (kernel) return &kernel;
     gpu::KernelInfo info;
-    info.name = fmt::format("{} of {} layers{}", name_, slots, clean_values ? ", float" : "");
+    info.name = fmt::format("{} of {} layers{}{}", name_, slots, clean_values ? ", float" : "", special ? ", special" : "");
     info.spirv = spirv_;
     info.bindings = buffers(2, 3);
     info.bindings.insert(info.bindings.end(), layer_slots, BindingKind::sampled_image);
     info.bindings.insert(info.bindings.end(), more_buffers_, BindingKind::storage_buffer);
     info.push_constant_bytes = push_bytes_;
-    info.specialization = {slots, clean_values, achromatic_};
+    info.specialization = {slots, clean_values, achromatic_, special};
     info.specialization.insert(info.specialization.end(), more_constants_.begin(), more_constants_.end());
     ENTOPTIC_TRY(created, gpu::Kernel::create(*device_, info));
     kernel = std::move(created);
@@ -233,7 +241,7 @@ Result<WarpPass> WarpPass::create(gpu::Device& device, const std::array<EyeGeome
 
 Result<SceneImage> WarpPass::record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage) {
     for (int eye = 0; eye < eye_count; ++eye) {  // no barrier between the eyes: they may run at the same time
-        ENTOPTIC_TRY(kernel, warp_.get(layers.count(eye), layers.has_float()));
+        ENTOPTIC_TRY(kernel, warp_.get(layers, eye));
         const auto& shown = grids_.shown(eye);
         std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), shown.list, stage.scene(),
                                            stage.scene()};  // binding 4 is the fused pass's
@@ -257,7 +265,7 @@ Result<GlancePass> GlancePass::create(gpu::Device& device, const std::array<EyeG
 Result<void> GlancePass::record(gpu::Commands& commands, const LayerTable& layers, const perception::Stage& stage) {
     const std::uint32_t tiles = stage.tiles_x() * stage.tiles_y();
     for (int eye = 0; eye < eye_count; ++eye) {
-        ENTOPTIC_TRY(kernel, kernels_.get(layers.count(eye), layers.has_float()));
+        ENTOPTIC_TRY(kernel, kernels_.get(layers, eye));
         std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), grids_.shown(eye).list, stage.tiles(), stage.solid_angle()};
         layers.append_images(eye, bindings);
         bindings.emplace_back(stage.scene());
@@ -337,7 +345,7 @@ Result<void> FusedPass::record(gpu::Commands& commands, const LayerTable& layers
     commands.fill(cleaned_, 0);
     commands.barrier();
     for (int eye = 0; eye < eye_count; ++eye) {
-        ENTOPTIC_TRY(kernel, kernels_.get(layers.count(eye), layers.has_float()));
+        ENTOPTIC_TRY(kernel, kernels_.get(layers, eye));
         const auto& shown = grids_.shown(eye);
         std::vector<gpu::Binding> bindings{grids_.geometry(), layers.layers(), shown.list, *out.codes, cleaned_};
         layers.append_images(eye, bindings);

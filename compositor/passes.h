@@ -51,12 +51,15 @@ public:
 
     void clear();
     // Adds the next layer of one eye, over those before.
-    void add(int eye, const LayerView& view, const SampledImage& image);
+    // False when all slots are taken: the layer is left out.
+    bool add(int eye, const LayerView& view, const SampledImage& image);
     // Writes what add() collected to the GPU's memory; call once a frame when the batch before was waited for.
     void upload();
 
     std::uint32_t count(int eye) const { return static_cast<std::uint32_t>(images_[std::size_t(eye)].size()); }
     bool has_float() const { return has_float_; }
+    // Some layer of the eye needs the kernels that curve, average, tint and replace.
+    bool is_special(int eye) const;
     // All layers are 8-bit codes of the panel's own curve: what is between two codes is a product of resampling only.
     bool only_srgb8() const { return only_srgb8_; }
     // The formats and scales of all layers keep their light within the panel's range: no pixel has to be looked at to know.
@@ -87,7 +90,8 @@ public:
     // `more_buffers`: storage buffers after the images.
     LayerKernels(gpu::Device& device, std::string name, std::span<const std::uint32_t> spirv, std::uint32_t push_bytes, bool achromatic,
                  std::vector<std::uint32_t> more_constants, std::size_t more_buffers = 0);
-    Result<const gpu::Kernel*> get(std::uint32_t layers, bool clean_values);
+    // For the layers of one eye.
+    Result<const gpu::Kernel*> get(const LayerTable& layers, int eye);
 
 private:
     gpu::Device* device_ = nullptr;
@@ -97,7 +101,7 @@ private:
     bool achromatic_ = false;
     std::vector<std::uint32_t> more_constants_;
     std::size_t more_buffers_ = 0;
-    std::map<std::pair<std::uint32_t, bool>, gpu::Kernel> kernels_;
+    std::map<std::tuple<std::uint32_t, bool, bool>, gpu::Kernel> kernels_;  // slots, clean values, special
 };
 
 // Layers → SceneImage.

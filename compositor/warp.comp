@@ -23,7 +23,7 @@ void main() {
     const vec2 px = vec2(pixel) + 0.5;
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     bool changed = false, changed_now;
-    const vec3 light = compose_layers(push.view, 1, lens_coordinates(push.view, 1, px), changed);
+    const vec3 light = compose_layers(push.view, 1, px, lens_coordinates(push.view, 1, px), changed);
     const vec3 clean = clean_scene_colour(light, changed_now);
     const bool visible = lens_visible(geometry[push.view], px);
     scene[(push.view * size.y + pixel.y) * size.x + pixel.x] = scene_pixel(clean, visible, changed || changed_now);

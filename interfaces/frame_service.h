@@ -17,7 +17,7 @@ struct SwapchainRequest {
     std::uint32_t vk_format = 0;
     std::uint32_t width = 0, height = 0, array_layers = 1, mip_levels = 1, samples = 1;
     std::uint32_t vk_usage = 0;      // what the application asked for; the compositor adds SAMPLED and TRANSFER_SRC
-    std::uint32_t vk_create_flags = 0;  // VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT
+    std::uint32_t vk_create_flags = 0;  // VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT, VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT (six layers a cube)
     bool is_static = false;          // one image only
 };
 

@@ -1,12 +1,14 @@
 #include "runtime/api/layers.h"
 
 #include "entoptic/XR_ENTOPTICX_scene_luminance.h"
+#include "runtime/api/layer_parts.h"
 #include "runtime/api/verify.h"
 #include "runtime/objects/session.h"
 #include "runtime/objects/space.h"
 #include "runtime/objects/swapchain.h"
 #include "runtime/objects/views.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace entoptic::runtime::api {
@@ -17,13 +19,7 @@ constexpr XrCompositionLayerFlags known_layer_flags = XR_COMPOSITION_LAYER_CORRE
                                                       XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT |
                                                       XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
 
-struct Context {
-    std::shared_ptr<Session> session;
-    XrTime time = 0;
-    LayerLuminance default_luminance;
-};
-
-Outcome resolve_luminance(const Context& context, const void* chain, LayerLuminance& luminance) {
+Outcome resolve_luminance(const LayerContext& context, const void* chain, LayerLuminance& luminance) {
     luminance = context.default_luminance;
     if (!context.session->instance().enabled(XR_ENTOPTICX_SCENE_LUMINANCE_EXTENSION_NAME)) return XR_SUCCESS;
     const auto* scale = chained<XrCompositionLayerSceneLuminanceENTOPTICX>(chain, XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX);
@@ -37,43 +33,8 @@ Outcome resolve_luminance(const Context& context, const void* chain, LayerLumina
     return XR_SUCCESS;
 }
 
-Outcome check_rectangle(const XrRect2Di& rect, const XrSwapchainCreateInfo& info) {
-    const std::int64_t right = std::int64_t(rect.offset.x) + rect.extent.width, bottom = std::int64_t(rect.offset.y) + rect.extent.height;
-    const bool inside = rect.offset.x >= 0 && rect.offset.y >= 0 && rect.extent.width >= 0 && rect.extent.height >= 0 &&
-                        right <= std::int64_t(info.width) && bottom <= std::int64_t(info.height);
-    if (inside) return XR_SUCCESS;
-    return error(XR_ERROR_SWAPCHAIN_RECT_INVALID, "imageRect {}x{} at ({}, {}) does not lie inside the swapchain's {}x{} texels",
-                 rect.extent.width, rect.extent.height, rect.offset.x, rect.offset.y, info.width, info.height);
-}
-
-enum class Holds { colour, depth };
-
-Outcome resolve_sub_image(const Context& context, const XrSwapchainSubImage& given, Holds holds, SubImage& image) {
-    std::shared_ptr<Swapchain> swapchain;
-    ENTOPTIC_XR_TRY(find(given.swapchain, swapchain));
-    if (swapchain->session() != context.session) return invalid("the layer's swapchain belongs to another session");
-    const XrSwapchainCreateInfo& info = swapchain->info();
-    if (given.imageArrayIndex >= info.arraySize) {
-        return invalid("imageArrayIndex {} is beyond the swapchain's {} slices", given.imageArrayIndex, info.arraySize);
-    }
-    ENTOPTIC_XR_TRY(check_rectangle(given.imageRect, info));
-    const bool depth = (info.usageFlags & XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
-    if (depth && holds == Holds::colour) return error(XR_ERROR_LAYER_INVALID, "a depth swapchain cannot be shown as a layer");
-    if (!depth && holds == Holds::depth) {
-        return error(XR_ERROR_LAYER_INVALID, "a layer's depth needs a swapchain made with XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT");
-    }
-    ENTOPTIC_XR_TRY(swapchain->take_for_layer(image.image_index));
-    image.swapchain = swapchain->id();
-    image.array_layer = given.imageArrayIndex;
-    image.x = given.imageRect.offset.x;
-    image.y = given.imageRect.offset.y;
-    image.width = given.imageRect.extent.width;
-    image.height = given.imageRect.extent.height;
-    return XR_SUCCESS;
-}
-
 // `shown` is false when the space cannot be located.
-Outcome resolve_space(const Context& context, XrSpace handle, Layer& layer, bool& shown) {
+Outcome resolve_space(const LayerContext& context, XrSpace handle, Layer& layer, bool& shown) {
     std::shared_ptr<Space> space;
     ENTOPTIC_XR_TRY(find(handle, space));
     if (space->session() != context.session) return invalid("the layer's space belongs to another session");
@@ -100,7 +61,7 @@ Outcome resolve_fov(const XrFovf& given, LayerView& view) {
 }
 
 // XR_KHR_composition_layer_depth, "Member Descriptions" of XrCompositionLayerDepthInfoKHR. Written so that NaN fails.
-Outcome resolve_depth(const Context& context, const void* chain, LayerDepth& depth) {
+Outcome resolve_depth(const LayerContext& context, const void* chain, LayerDepth& depth) {
     if (!context.session->instance().enabled(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) return XR_SUCCESS;
     const auto* given = chained<XrCompositionLayerDepthInfoKHR>(chain, XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR);
     if (!given) return XR_SUCCESS;
@@ -119,7 +80,7 @@ Outcome resolve_depth(const Context& context, const void* chain, LayerDepth& dep
 }
 
 // Both eyes' views from `first_view` on.
-Outcome resolve_projection(const Context& context, const XrCompositionLayerProjection& given, std::size_t first_view, Layer& layer) {
+Outcome resolve_projection(const LayerContext& context, const XrCompositionLayerProjection& given, std::size_t first_view, Layer& layer) {
     layer.kind = LayerKind::projection;
     for (std::size_t eye = 0; eye < eye_count; ++eye) {
         const XrCompositionLayerProjectionView& view = given.views[first_view + eye];
@@ -133,21 +94,9 @@ Outcome resolve_projection(const Context& context, const XrCompositionLayerProje
     return XR_SUCCESS;
 }
 
-Outcome resolve_quad(const Context& context, const XrCompositionLayerQuad& given, Layer& layer) {
+Outcome resolve_quad(const LayerContext& context, const XrCompositionLayerQuad& given, Layer& layer) {
     layer.kind = LayerKind::quad;
-    switch (given.eyeVisibility) {
-        case XR_EYE_VISIBILITY_BOTH:
-            layer.visibility = EyeVisibility::both;
-            break;
-        case XR_EYE_VISIBILITY_LEFT:
-            layer.visibility = EyeVisibility::left;
-            break;
-        case XR_EYE_VISIBILITY_RIGHT:
-            layer.visibility = EyeVisibility::right;
-            break;
-        default:
-            return invalid("{} is not an eye visibility", static_cast<int>(given.eyeVisibility));
-    }
+    ENTOPTIC_XR_TRY(resolve_visibility(given.eyeVisibility, layer));
     ENTOPTIC_XR_TRY(check_pose(given.pose));
     if (!std::isfinite(given.size.width) || !std::isfinite(given.size.height) || given.size.width < 0 || given.size.height < 0) {
         return invalid("the quad's size {} x {} m must be finite and not negative", given.size.width, given.size.height);
@@ -160,7 +109,7 @@ Outcome resolve_quad(const Context& context, const XrCompositionLayerQuad& given
     return XR_SUCCESS;
 }
 
-Outcome check_views(const Context& context, const XrCompositionLayerProjection& given) {
+Outcome check_views(const LayerContext& context, const XrCompositionLayerProjection& given) {
     const std::size_t wanted = view_count(context.session->view_configuration());
     if (given.viewCount != wanted) {
         return invalid("the projection layer has {} views; the session's view configuration has {}", given.viewCount, wanted);
@@ -168,18 +117,51 @@ Outcome check_views(const Context& context, const XrCompositionLayerProjection& 
     return require_pointer(given.views, "the projection layer's views");
 }
 
+// XR_ERROR_LAYER_INVALID unless this type of layer is core or of an enabled extension.
+Outcome check_offered(const Instance& instance, XrStructureType type) {
+    struct Type {
+        XrStructureType type;
+        const char* extension;
+    };
+    constexpr Type types[] = {{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr},
+                              {XR_TYPE_COMPOSITION_LAYER_QUAD, nullptr},
+                              {XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR, XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME},
+                              {XR_TYPE_COMPOSITION_LAYER_EQUIRECT_KHR, XR_KHR_COMPOSITION_LAYER_EQUIRECT_EXTENSION_NAME},
+                              {XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR, XR_KHR_COMPOSITION_LAYER_EQUIRECT2_EXTENSION_NAME},
+                              {XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME}};
+    for (const Type& known : types) {
+        if (known.type == type && (!known.extension || instance.enabled(known.extension))) return XR_SUCCESS;
+    }
+    return error(XR_ERROR_LAYER_INVALID, "layer type {} is not one of this version of OpenXR or of an enabled extension",
+                 static_cast<int>(type));
+}
+
+Outcome resolve_tint(const LayerContext& context, const void* chain, LayerTint& tint) {
+    if (!context.session->instance().enabled(XR_KHR_COMPOSITION_LAYER_COLOR_SCALE_BIAS_EXTENSION_NAME)) return XR_SUCCESS;
+    const auto* given = chained<XrCompositionLayerColorScaleBiasKHR>(chain, XR_TYPE_COMPOSITION_LAYER_COLOR_SCALE_BIAS_KHR);
+    if (!given) return XR_SUCCESS;
+    tint.scale = {given->colorScale.r, given->colorScale.g, given->colorScale.b, given->colorScale.a};
+    tint.bias = {given->colorBias.r, given->colorBias.g, given->colorBias.b, given->colorBias.a};
+    const auto finite = [](float value) { return std::isfinite(value); };
+    if (std::all_of(tint.scale.begin(), tint.scale.end(), finite) && std::all_of(tint.bias.begin(), tint.bias.end(), finite))
+        return XR_SUCCESS;
+    return invalid("colorScale and colorBias must be finite");
+}
+
 // What all layers have.
-Outcome resolve_base(const Context& context, const XrCompositionLayerBaseHeader& given, Layer& layer, bool& shown) {
+Outcome resolve_base(const LayerContext& context, const XrCompositionLayerBaseHeader& given, Layer& layer, bool& shown) {
     if ((given.layerFlags & ~known_layer_flags) != 0) return invalid("layerFlags has unknown bits ({:#x})", given.layerFlags);
     layer.blend_texture_source_alpha = (given.layerFlags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0;
     layer.unpremultiplied_alpha = (given.layerFlags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0;
     ENTOPTIC_XR_TRY(resolve_luminance(context, given.next, layer.luminance));
+    ENTOPTIC_XR_TRY(resolve_tint(context, given.next, layer.tint));
     return resolve_space(context, given.space, layer, shown);
 }
 
 // Appends what the compositor shows of one layer of the application: nothing, itself, or its parts.
-Outcome resolve_layer(const Context& context, const XrCompositionLayerBaseHeader* given, std::vector<Layer>& layers) {
+Outcome resolve_layer(const LayerContext& context, const XrCompositionLayerBaseHeader* given, std::vector<Layer>& layers) {
     if (!given) return error(XR_ERROR_LAYER_INVALID, "a layer is null");
+    ENTOPTIC_XR_TRY(check_offered(context.session->instance(), given->type));
     const auto* projection = reinterpret_cast<const XrCompositionLayerProjection*>(given);
     Layer layer;
     bool shown = false;
@@ -193,9 +175,23 @@ Outcome resolve_layer(const Context& context, const XrCompositionLayerBaseHeader
             ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
             ENTOPTIC_XR_TRY(resolve_quad(context, *reinterpret_cast<const XrCompositionLayerQuad*>(given), layer));
             break;
+        case XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR:
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            ENTOPTIC_XR_TRY(resolve_cylinder(context, *reinterpret_cast<const XrCompositionLayerCylinderKHR*>(given), layer));
+            break;
+        case XR_TYPE_COMPOSITION_LAYER_EQUIRECT_KHR:
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            ENTOPTIC_XR_TRY(resolve_equirect(context, *reinterpret_cast<const XrCompositionLayerEquirectKHR*>(given), layer));
+            break;
+        case XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR:
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            ENTOPTIC_XR_TRY(resolve_equirect2(context, *reinterpret_cast<const XrCompositionLayerEquirect2KHR*>(given), layer));
+            break;
+        case XR_TYPE_COMPOSITION_LAYER_CUBE_KHR:
+            ENTOPTIC_XR_TRY(resolve_base(context, *given, layer, shown));
+            return resolve_cube(context, *reinterpret_cast<const XrCompositionLayerCubeKHR*>(given), layer, shown, layers);
         default:
-            return error(XR_ERROR_LAYER_INVALID, "layer type {} is not offered; submit projection and quad layers",
-                         static_cast<int>(given->type));
+            break;  // not offered: refused above
     }
     if (shown) layers.push_back(layer);
     if (given->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION || projection->viewCount == eye_count) return XR_SUCCESS;
@@ -213,11 +209,9 @@ Outcome resolve_layers(const std::shared_ptr<Session>& session, const XrFrameEnd
         return error(XR_ERROR_LAYER_LIMIT_EXCEEDED, "{} layers are more than the {} of this system", info.layerCount, max_layers);
     }
     if (info.layerCount > 0) ENTOPTIC_XR_TRY(require_pointer(info.layers, "frameEndInfo->layers"));
-    const Context context{session, info.displayTime, session->host().default_luminance()};
+    const LayerContext context{session, info.displayTime, session->host().default_luminance()};
     for (std::uint32_t i = 0; i < info.layerCount; ++i) { ENTOPTIC_XR_TRY(resolve_layer(context, info.layers[i], layers)); }
-    if (layers.size() <= max_layers) return XR_SUCCESS;
-    return error(XR_ERROR_LAYER_LIMIT_EXCEEDED, "the layers have {} parts, more than the {} that can be composed; insets count as layers",
-                 layers.size(), max_layers);
+    return XR_SUCCESS;
 }
 
 }  // namespace entoptic::runtime::api

@@ -23,7 +23,8 @@ Outcome check_size(const XrSwapchainCreateInfo& info) {
                        largest_swapchain_side);
     }
     if (info.faceCount != 1 && info.faceCount != 6) return invalid("faceCount is {}; it must be 1 or 6", info.faceCount);
-    if (info.faceCount == 6) return error(XR_ERROR_FEATURE_UNSUPPORTED, "cube maps are not supported");
+    if (info.faceCount == 6 && info.width != info.height)
+        return invalid("a cube's faces must be square, not {}x{}", info.width, info.height);
     if (info.sampleCount == 0) return invalid("sampleCount is 0");
     if (info.sampleCount != 1)
         return error(XR_ERROR_FEATURE_UNSUPPORTED, "multisampled swapchains are not supported; resolve into one sample");
@@ -59,7 +60,7 @@ Outcome allocate(Session& session, const XrSwapchainCreateInfo& info, SwapchainA
     SwapchainRequest request;
     request.width = info.width;
     request.height = info.height;
-    request.array_layers = info.arraySize;
+    request.array_layers = info.arraySize * info.faceCount;
     request.mip_levels = info.mipCount;
     request.is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
     ENTOPTIC_XR_TRY(session.graphics()->describe(info, request));

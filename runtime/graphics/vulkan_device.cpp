@@ -51,12 +51,13 @@ Outcome VulkanDevice::describe(const XrSwapchainCreateInfo& info, SwapchainReque
     VkImageUsageFlags usage = depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     for (const UsageBit& bit : usage_bits) usage |= (info.usageFlags & bit.xr) != 0 ? bit.vk : 0u;
     const bool mutable_format = (info.usageFlags & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) != 0;
-    const VkImageCreateFlags flags = mutable_format ? VkImageCreateFlags(VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT) : 0u;
+    const VkImageCreateFlags flags = (mutable_format ? VkImageCreateFlags(VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT) : 0u) |
+                                     (info.faceCount == 6 ? VkImageCreateFlags(VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) : 0u);
     VkImageFormatProperties limits{};
     const VkResult result = context_->instance_functions.GetPhysicalDeviceImageFormatProperties(
         context_->physical_device, format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL, usage, flags, &limits);
     const bool fits = info.width <= limits.maxExtent.width && info.height <= limits.maxExtent.height &&
-                      info.arraySize <= limits.maxArrayLayers && info.mipCount <= limits.maxMipLevels;
+                      info.arraySize * info.faceCount <= limits.maxArrayLayers && info.mipCount <= limits.maxMipLevels;
     if (result != VK_SUCCESS || !fits) {
         return error(XR_ERROR_FEATURE_UNSUPPORTED, "the GPU has no {}x{}x{} image of format {} with usage {:#x}", info.width, info.height,
                      info.arraySize, info.format, usage);
