@@ -68,7 +68,7 @@ Result<std::vector<PersonSetting>> read_observer(const std::string& name) {
 // A person's number that the chosen model takes in another range says which file and key asked for it.
 Result<void> check_range(const perception::Selection& selection, const PersonSetting& wanted, const std::string& observer) {
     for (const perception::ParameterInfo& p : selection.find(wanted.slot)->entry->parameters)
-        if (wanted.parameter == p.name && !(wanted.value >= static_cast<double>(p.min) && wanted.value <= static_cast<double>(p.max)))
+        if (wanted.parameter == p.name && !p.allows(wanted.value))
             return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range: {:g} to {:g} {}.", observer, wanted.slot, wanted.parameter, wanted.value, p.min,
                                            p.max, p.unit));
     return {};

@@ -26,6 +26,9 @@ struct ParameterInfo {
     float min, max, default_value;
     const char* source;   // paper and equation, standard, or "choice: why"
     const char* meaning;  // one line for people
+
+    // Within the range as it is stored: bounds such as 0.1 are floats.
+    bool allows(double value) const { return static_cast<float>(value) >= min && static_cast<float>(value) <= max; }
 };
 
 // One file that a model reads, named by its path. Set like a parameter: slot.name=PATH; an empty path: none.

@@ -43,7 +43,7 @@ Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::stri
         const ParameterInfo& info = choice.entry->parameters[i];
         names.emplace_back(info.name);
         if (name != info.name) continue;
-        if (!(value >= static_cast<double>(info.min) && value <= static_cast<double>(info.max)))
+        if (!info.allows(value))
             return usage_error(fmt::format("{}.{} = {} is out of range: {} to {} {}.", slot, name, value, info.min, info.max, info.unit));
         choice.parameters[i] = static_cast<float>(value);
         return {};
