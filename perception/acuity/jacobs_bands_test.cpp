@@ -3,6 +3,7 @@
 #include "perception/acuity/acuity_laws.h"
 #include "perception/acuity/jacobs_bands_math.glsl"
 #include "perception/acuity/local_blur_math.glsl"
+#include "perception/patch_noise.glsl"
 #include "perception/testing/gate_sweep.h"
 
 namespace entoptic::perception {
@@ -39,7 +40,7 @@ TEST(JacobsBands, NoiseKeepsBandsAsOftenAsTheTableSays) {
     // P(rho + g X > rho_i) for g = 0.25 with the noise as it is drawn.
     std::vector<double> noise;
     for (int i = 0; i < 20000; ++i)
-        noise.push_back(local_blur::patch_noise(3, {i * 0.7316, i * 0.1937}, static_cast<std::uint32_t>(i % 91), (i % 13) / 13.0));
+        noise.push_back(patch::patch_noise(3, {i * 0.7316, i * 0.1937}, static_cast<std::uint32_t>(i % 91), (i % 13) / 13.0));
     double worst = 0;
     for (const OracleRow& row : oracle("jacobs_acuity_bands"))
         for (double rho : {0.0, 0.25, 0.5, 0.75, 1.0}) {

@@ -3,6 +3,7 @@
 #include "perception/acuity/acuity_laws.h"
 #include "perception/acuity/larson_increment_math.glsl"
 #include "perception/acuity/local_blur_math.glsl"
+#include "perception/patch_noise.glsl"
 #include "perception/testing/gate_sweep.h"
 
 namespace entoptic::perception {
@@ -109,7 +110,7 @@ TEST(LarsonAcuity, NoiseIsNormalEverywhereAndSmooth) {
     double sum = 0, squares = 0, fourth = 0;
     const int points = 40000;
     for (int i = 0; i < points; ++i) {
-        const double x = local_blur::patch_noise(7, {i * 0.7316, i * 0.1937 - 300}, static_cast<std::uint32_t>(i % 91), (i % 13) / 13.0);
+        const double x = patch::patch_noise(7, {i * 0.7316, i * 0.1937 - 300}, static_cast<std::uint32_t>(i % 91), (i % 13) / 13.0);
         sum += x, squares += x * x, fourth += x * x * x * x;
     }
     EXPECT_NEAR(sum / points, 0, 0.03);
@@ -117,7 +118,7 @@ TEST(LarsonAcuity, NoiseIsNormalEverywhereAndSmooth) {
     EXPECT_NEAR(fourth / points, 3, 0.25);
     for (double t = 0; t < 3; t += 0.01) {
         const auto at = [](double time) {
-            return local_blur::patch_noise(7, {3.3, 4.4}, static_cast<std::uint32_t>(time), time - std::floor(time));
+            return patch::patch_noise(7, {3.3, 4.4}, static_cast<std::uint32_t>(time), time - std::floor(time));
         };
         EXPECT_LT(std::abs(at(t + 0.01) - at(t)), 0.12);
     }
