@@ -27,4 +27,14 @@ FN GateDecision gate_decision(float value, float limit, bool ran_before, float q
 
 ENTOPTIC_MATH_END
 
+// For a gate whose bound is exact: writes its outcome, and the workgroups of dispatch 0.
+#define ENTOPTIC_SET_EXACT_GATE(gate, runs, groups, compared) \
+    gate.dispatch[0] = GateDispatch((runs) ? (groups) : 0u, 1u, 1u); \
+    gate.ran = (runs) ? 1u : 0u; \
+    gate.reason = (runs) ? 0u : 1u; \
+    gate.bound = 0.0; \
+    gate.value = compared; \
+    if (runs) gate.frames_run += 1u; \
+    else gate.frames_gated += 1u
+
 #endif

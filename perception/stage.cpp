@@ -46,6 +46,10 @@ Stage::~Stage() = default;
 Result<void> Stage::allocate(const StageOptions& options) {
     if (options.views.empty() || options.views[0].width == 0 || options.views[0].height == 0)
         return failure("The perception stage needs at least one view of at least one pixel.");
+    for (const EyeGeometry& view : options.views)
+        if (view.width != options.views[0].width || view.height != options.views[0].height)
+            return failure(fmt::format("All views must be of one size, but one has {}x{} pixels and one {}x{}.", options.views[0].width,
+                                       options.views[0].height, view.width, view.height));
     width_ = options.views[0].width;
     height_ = options.views[0].height;
     views_ = static_cast<std::uint32_t>(options.views.size());
@@ -272,9 +276,11 @@ void Stage::record(gpu::Commands& commands, const FrameInput& measured) {
     commands.end_stage();
     const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
     const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), [&](const Slot& slot) { return is("pupil")(slot) || is("adaptation")(slot); });
-    // Where scene light ends: without a tone model, before the first model that acts on what it observed.
-    const auto tone = std::find_if(slots_.begin(), slots_.end(),
-                                   [&](const Slot& slot) { return is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get()); });
+    // Where the light on the retina is observed: before the lid, of which the observers know themselves; else where scene light ends, or,
+    // without a tone model, before the first model that acts on what it observed.
+    const auto tone = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+        return is("eyelid")(slot) || is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get());
+    });
     for (Slot& slot : slots_) slot.recorded = slot.resting = false;
     for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
     for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);

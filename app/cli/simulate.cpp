@@ -9,6 +9,7 @@
 #include "base/image_io.h"
 #include "perception/pupil/watson_yellott.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -110,8 +111,16 @@ Result<void> plan_eye(const Options& o, Plan& plan) {
     return {};
 }
 
-Result<Selection> plan_selection(const Options& o) {
-    ENTOPTIC_TRY(selection, select_effects(o.preset, o.models, o.settings, o.observer, Viewer::reader));
+// The eye that blinks in the trace is nobody's own here, so that its lid has to darken the picture, unless --model says otherwise.
+std::vector<std::string> models_with_lid(const Options& o, const std::optional<Trace>& trace) {
+    std::vector<std::string> models = o.models;
+    const bool said = std::any_of(models.begin(), models.end(), [](const std::string& model) { return model.starts_with("eyelid="); });
+    if (trace && trace->has_blinks() && !said && o.preset != "off") models.emplace_back("eyelid=blink");
+    return models;
+}
+
+Result<Selection> plan_selection(const Options& o, const std::optional<Trace>& trace) {
+    ENTOPTIC_TRY(selection, select_effects(o.preset, models_with_lid(o, trace), o.settings, o.observer, Viewer::reader));
     // There is no wearer here: the pupil that is given is that of the eye in the scene.
     std::erase_if(selection.choices, [](const Choice& choice) { return choice.entry->name == "residual_pupil"; });
     if (!o.photographic) return selection;
@@ -133,9 +142,9 @@ Result<Plan> make_plan(const Options& o) {
     Plan plan;
     if (o.projection == "equirect") plan.projection = Projection::equirect;
     if (o.projection == "rectilinear") plan.projection = Projection::rectilinear;
-    ENTOPTIC_TRY(selection, plan_selection(o));
-    plan.selection = std::move(selection);
     ENTOPTIC_CHECK(plan_eye(o, plan));
+    ENTOPTIC_TRY(selection, plan_selection(o, plan.trace));
+    plan.selection = std::move(selection);
     ENTOPTIC_TRY(files, input_files(o.input));
     plan.files = std::move(files);
     ENTOPTIC_CHECK(plan_times(o, plan));
@@ -183,7 +192,7 @@ private:
         if (plan_.trace) {
             const TraceState state = plan_.trace->at(time_s);
             eye.gaze_direction = gaze_direction(state.gaze_x_deg, state.gaze_y_deg);
-            eye.eyelid_open = state.blink ? 0.0f : 1.0f;
+            eye.eyelid_open = static_cast<float>(state.eyelid_open);
             if (state.pupil_mm) pupil = state.pupil_mm;
         }
         eye.pupil_diameter_mm =

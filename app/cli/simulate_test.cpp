@@ -194,6 +194,31 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
                  {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("worse.csv")});
 }
 
+TEST_F(Simulate, ABlinkInTheTraceDarkensThePicture) {
+    // Closed from 0.6 to 0.8, half way at 0.55, open again at 1.
+    write("blink.csv", "time_s,blink\n0,0\n0.5,1\n0.8,0\n");
+    const auto seen = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"simulate", picture("a.exr", even(16, 16, 50)), "-o", path("out_%t.exr"), "--fov", "60", "--trace", path("blink.csv"),
+                                       "--pupil", "4", "--at", "0.45,0.55,0.7,1.1", "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        const auto outcome = entoptic(words);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        std::vector<float> red;
+        const auto document = outcome.json();
+        for (const auto& p : document["pictures"]) red.push_back(read_exr(p["output"].get<std::string>())->rgb.at(8, 8, 0));
+        return red;
+    };
+    for (const std::vector<std::string>& way : {std::vector<std::string>{}, {"--reference"}}) {
+        const auto red = seen(way);
+        EXPECT_NEAR(red[0], 50, 0.01);
+        EXPECT_NEAR(red[1], 50 * (0.5 + 0.5 * 0.056), 0.05);
+        EXPECT_NEAR(red[2], 50 * 0.056, 0.01);
+        EXPECT_NEAR(red[3], 50, 0.01);
+    }
+    EXPECT_NEAR(seen({"--model", "eyelid=none"})[2], 50, 0.01);
+    EXPECT_NEAR(seen({"--preset", "off"})[2], 50, 0.01);
+}
+
 TEST_F(Simulate, ThePupilIsGivenOrModelled) {
     const std::string dark = picture("dark.exr", even(16, 16, 1e-3f)), bright = picture("bright.exr", even(16, 16, 1e4f));
     const auto pupil = [&](const std::string& scene, const std::string& option) {

@@ -37,7 +37,7 @@ public:
         // The order of Stage::record().
         std::size_t optics = 0, tone = 0;
         while (optics < models_.size() && (choices[optics].entry->slot == "adaptation" || choices[optics].entry->slot == "pupil")) ++optics;
-        while (tone < models_.size() && choices[tone].entry->slot != "tone" && !(models_[tone] && models_[tone]->observes_retina())) ++tone;
+        while (tone < models_.size() && choices[tone].entry->slot != "eyelid" && choices[tone].entry->slot != "tone" && !(models_[tone] && models_[tone]->observes_retina())) ++tone;
         each(0, optics, &ReferenceModel::apply);
         each(0, models_.size(), &ReferenceModel::plan);
         if (want_picture || observes()) {

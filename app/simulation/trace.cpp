@@ -92,15 +92,33 @@ Result<Trace> Trace::read(const std::string& path) {
 
 TraceState Trace::at(double time_s) const {
     const auto next = std::upper_bound(rows_.begin(), rows_.end(), time_s, [](double t, const Row& r) { return t < r.time_s; });
-    if (next == rows_.begin()) return rows_.front().state;
-    if (next == rows_.end()) return rows_.back().state;
+    const auto with_lid = [&](TraceState state) {
+        state.eyelid_open = eyelid_open_at(time_s);
+        return state;
+    };
+    if (next == rows_.begin()) return with_lid(rows_.front().state);
+    if (next == rows_.end()) return with_lid(rows_.back().state);
     const Row &a = *(next - 1), &b = *next;
     const double w = (time_s - a.time_s) / (b.time_s - a.time_s);
-    TraceState state = a.state;
+    TraceState state = with_lid(a.state);
     state.gaze_x_deg = std::lerp(a.state.gaze_x_deg, b.state.gaze_x_deg, w);
     state.gaze_y_deg = std::lerp(a.state.gaze_y_deg, b.state.gaze_y_deg, w);
     if (a.state.pupil_mm && b.state.pupil_mm) state.pupil_mm = std::lerp(*a.state.pupil_mm, *b.state.pupil_mm, w);
     return state;
+}
+
+bool Trace::has_blinks() const {
+    return std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.state.blink; });
+}
+
+// The lid runs evenly towards where the rows up to now send it, and is shown with a soft start and end.
+double Trace::eyelid_open_at(double time_s) const {
+    double open = rows_.front().state.blink ? 0 : 1;
+    for (std::size_t i = 0; i < rows_.size() && rows_[i].time_s < time_s; ++i) {
+        const double until = i + 1 < rows_.size() ? std::min(time_s, rows_[i + 1].time_s) : time_s, seconds = until - rows_[i].time_s;
+        open = rows_[i].state.blink ? std::max(open - seconds / closing_s, 0.0) : std::min(open + seconds / opening_s, 1.0);
+    }
+    return open * open * (3 - 2 * open);
 }
 
 }  // namespace entoptic::app

@@ -1,5 +1,6 @@
 #include "perception/doubling.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace entoptic::perception {
@@ -48,6 +49,17 @@ TEST(Doubling, ModelsThatAddTheDifferenceAreNotRefused) {
     for (const char* model : {"acuity=larson_increment", "acuity=jacobs_bands", "mesopic=mes2", "mesopic=krawczyk_tint", "glare=cie135", "glare=luidolt_spectral",
                               "glare=fraunhofer_mask", "dof=dioptric_disc", "dof=liu_range", "adaptation=pattanaik_slow"})
         EXPECT_EQ(refusal("combined", {model}, {}, Viewer::wearer), "") << model;
+}
+
+// The ends of a range such as 0.1 to 2 are floats: 0.1 itself lies a rounding below its own float.
+TEST(Ranges, IncludeTheirEnds) {
+    for (const ModelEntry* entry : models())
+        for (const ParameterInfo& p : entry->parameters) {
+            EXPECT_TRUE(p.allows(static_cast<double>(p.min)) && p.allows(static_cast<double>(p.max))) << p.name;
+            EXPECT_FALSE(p.allows(static_cast<double>(p.max) + 0.01 * (1 + static_cast<double>(std::abs(p.max)))) || p.allows(std::nan(""))) << p.name;
+        }
+    EXPECT_TRUE(select("off", {"noise=rod_noise"}, {"noise.grain_deg=0.1"}));
+    EXPECT_FALSE(select("off", {"noise=rod_noise"}, {"noise.grain_deg=0.0999"}));
 }
 
 TEST(Doubling, TwoToneCurvesAreRefusedForEverybody) {
