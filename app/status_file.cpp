@@ -81,6 +81,7 @@ std::vector<RunningRuntime> running_runtimes() {
         if (pid <= 0) continue;
         if (!alive(pid)) {
             fs::remove(entry.path(), error);
+            fs::remove(fs::path(entry.path()).replace_extension(".set"), error);
             continue;
         }
         std::ifstream in(entry.path());

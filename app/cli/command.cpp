@@ -67,6 +67,7 @@ int run_command_line(std::vector<std::string> arguments) {
     add_stimulus(app, action);
     add_effects(app, action);
     add_curve(app, action);
+    add_set(app, action);
     add_status(app, action);
     add_bench(app, action);
     add_eye(app, action);

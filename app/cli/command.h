@@ -19,6 +19,7 @@ void add_simulate(CLI::App& app, Action& action);
 void add_stimulus(CLI::App& app, Action& action);
 void add_effects(CLI::App& app, Action& action);
 void add_curve(CLI::App& app, Action& action);
+void add_set(CLI::App& app, Action& action);
 void add_status(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_eye(CLI::App& app, Action& action);

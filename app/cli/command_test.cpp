@@ -14,7 +14,7 @@ class Command : public testing::CommandLineTest {};
 TEST_F(Command, HelpAndVersionGoToStandardOutput) {
     const auto help = entoptic({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* name : {"run", "simulate", "effects", "curve", "status", "bench", "config"})
+    for (const char* name : {"run", "simulate", "effects", "curve", "set", "status", "bench", "config"})
         EXPECT_NE(help.out.find(name), std::string::npos) << name;
     const auto version = entoptic({"--version"});
     EXPECT_EQ(version.status, 0);

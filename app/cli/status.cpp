@@ -1,10 +1,12 @@
 // `entoptic status`: what runs, and what this machine computes on.
 #include "app/cli/command.h"
 #include "app/cli/output.h"
+#include "app/live_settings.h"
 #include "app/status_file.h"
 #include "gpu/device.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 
 namespace entoptic::app {
@@ -62,6 +64,8 @@ void print_runtime(const Json& runtime) {
     for (const Json& effect : runtime.value("effects", Json::array()))
         fmt::print("  {:<12} {} {}: {}\n", text_of(effect, "slot"), text_of(effect, "model"), effect.value("on", false) ? "on" : "off",
                    text_of(effect, "why"));
+    if (const auto adjusted = answer_of(runtime); adjusted && !adjusted->settings.empty())
+        fmt::print("  {:<12} {}\n", "set", fmt::join(adjusted->settings, ", "));
     for (const Json& error : runtime.value("errors", Json::array()))
         fmt::print("  problem      {}\n", error.is_string() ? error.get<std::string>() : error.dump());
 }

@@ -14,11 +14,12 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fstream>
+#include <unistd.h>
 
 namespace entoptic::app {
 namespace {
 
-constexpr std::chrono::milliseconds publish_every{500};
+constexpr std::chrono::milliseconds publish_every{500}, look_for_requests_every{50};
 constexpr std::size_t kept_errors = 100;
 
 // ---- The host that lives, for exit() with an instance still open ------------------------------------------------------------------
@@ -178,11 +179,47 @@ void Host::start_publishing() {
 
 void Host::publish_until_stopped() {
     std::unique_lock lock(mutex_);
-    while (!stop_publishing_.wait_for(lock, publish_every, [this] { return finished_; })) {
+    std::chrono::milliseconds since_published{0};
+    while (!stop_publishing_.wait_for(lock, look_for_requests_every, [this] { return finished_; })) {
         lock.unlock();
-        publish();
+        since_published += look_for_requests_every;
+        if (adjust() || since_published >= publish_every) {
+            publish();
+            since_published = {};
+        }
         lock.lock();
     }
+}
+
+bool Host::adjust() {
+    const auto taken = take_request(getpid());
+    if (!taken) {
+        report_error(taken.error().message);
+        return true;
+    }
+    if (!*taken) return false;
+    const auto done = apply(**taken);
+    facts_.adjusted.id = (*taken)->id;
+    facts_.adjusted.error = done ? "" : done.error().message;
+    return true;
+}
+
+Result<void> Host::apply(const SettingsRequest& request) {
+    std::vector<std::string> live = request.reset ? std::vector<std::string>{} : facts_.adjusted.settings;
+    for (const std::string& setting : request.settings) {
+        // A parameter that is set again takes its old place.
+        const std::string name = setting.substr(0, setting.find('=') + 1);
+        std::erase_if(live, [&](const std::string& old) { return !name.empty() && old.starts_with(name); });
+        live.push_back(setting);
+    }
+    std::vector<std::string> settings = facts_.config.setting_texts();
+    settings.insert(settings.end(), live.begin(), live.end());
+    ENTOPTIC_TRY(selection, select_effects(facts_.config.preset.value, facts_.config.model_names(), settings, facts_.config.observer.value,
+                                           perception::Viewer::wearer));
+    facts_.selection = selection;
+    facts_.adjusted.settings = std::move(live);
+    frames_->select(std::move(selection));
+    return {};
 }
 
 SessionFacts Host::facts_now() const {
@@ -214,6 +251,7 @@ void Host::finish() {
     write_report(report);
     judge(report);
     status_ = {};
+    (void)take_request(getpid());   // one that came too late
 }
 
 void Host::write_report(const compositor::RunReport& report) const {

@@ -39,6 +39,9 @@ private:
     void start_publishing();
     void publish_until_stopped();
     void publish();
+    // Takes and answers a request of `entoptic set`; true when there was one.
+    bool adjust();
+    Result<void> apply(const SettingsRequest& request);
     SessionFacts facts_now() const;
     std::vector<std::string> errors(const compositor::RunReport& report) const;
     void judge(const compositor::RunReport& report) const;

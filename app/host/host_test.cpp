@@ -4,11 +4,13 @@
 
 #include "app/launch.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <unistd.h>
 
 namespace entoptic::app {
@@ -28,7 +30,8 @@ protected:
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     void configure(std::vector<std::pair<std::string, std::string>> values) const {
-        values.insert(values.begin(), {{"panel", "\"64x72\""}, {"clock", "\"lockstep\""}, {"preset", "\"off\""}});
+        for (const auto& [key, value] : {std::pair{"panel", "\"64x72\""}, {"clock", "\"lockstep\""}, {"preset", "\"off\""}})
+            if (std::none_of(values.begin(), values.end(), [&](const auto& wanted) { return wanted.first == key; })) values.emplace_back(key, value);
         ASSERT_TRUE(write_overlay(path("overlay.toml"), {"", path("launcher"), values}));
         setenv("ENTOPTIC_CONFIG", path("overlay.toml").c_str(), 1);
     }
@@ -106,6 +109,53 @@ TEST_F(HostTest, TellsItsStatusWhileItLives) {
     EXPECT_FALSE(status["effects"].empty());
     EXPECT_NE(status["photometry"]["source"].get<std::string>().find("panel's white"), std::string::npos);
     EXPECT_TRUE(json_of("launcher/status.json").is_object());
+}
+
+TEST_F(HostTest, TakesSettingsWhileItRuns) {
+    configure({{"preset", "\"combined\""}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    const auto set = [](std::vector<std::string> settings, bool reset = false) {
+        static int number = 0;
+        const std::string id = std::to_string(++number);
+        EXPECT_TRUE(leave_request(getpid(), {id, std::move(settings), reset}));
+        for (int i = 0; i < 500; ++i) {
+            for (const RunningRuntime& runtime : running_runtimes())
+                if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        ADD_FAILURE() << "no answer";
+        return SettingsAnswer{};
+    };
+    using List = std::vector<std::string>;
+    EXPECT_EQ(set({"glare.age=70", "glare.pigment=1"}).settings, (List{"glare.age=70", "glare.pigment=1"}));
+    EXPECT_EQ(set({"glare.age=60"}).settings, (List{"glare.pigment=1", "glare.age=60"}));
+    // All or nothing, and the reason with the range.
+    const SettingsAnswer wrong = set({"glare.pigment=0", "glare.age=900"});
+    EXPECT_NE(wrong.error.find("glare.age = 900 is out of range: 10 to 90"), std::string::npos) << wrong.error;
+    EXPECT_EQ(wrong.settings, (List{"glare.pigment=1", "glare.age=60"}));
+    EXPECT_NE(set({"glare.photographic=1"}).error.find("counts an effect twice"), std::string::npos);
+    EXPECT_NE(set({"nonsense"}).error.find("SLOT.PARAMETER=VALUE"), std::string::npos);
+    show(**host, 2);
+    EXPECT_EQ(set({}, true).settings, List{});
+    EXPECT_FALSE(fs::exists(path("entoptic/" + std::to_string(getpid()) + ".set")));
+}
+
+TEST_F(HostTest, RequestsThatAreNoneAreRefused) {
+    configure({});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    const std::string request = path("entoptic/" + std::to_string(getpid()) + ".set");
+    for (const std::string& text : {std::string("nonsense"), std::string("[]"), std::string(R"({"id":7})"), std::string(R"({"id":"a","settings":[1]})"),
+                                    std::string(R"({"id":"a","settings":{"b":"c"}})"), std::string(100000, 'x')}) {
+        std::ofstream(request) << text;
+        for (int i = 0; i < 500 && fs::exists(request); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_FALSE(fs::exists(request)) << text.substr(0, 40);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    const auto running = running_runtimes();
+    ASSERT_EQ(running.size(), 1u);
+    EXPECT_NE(running[0].status["errors"].dump().find("was no request"), std::string::npos) << running[0].status["errors"];
 }
 
 TEST_F(HostTest, TheSdrDefaultMapsCodesToThePanelsOwnLight) {

@@ -131,6 +131,7 @@ Json status_json(const SessionFacts& facts, const compositor::RunReport& report,
             {"cameras", {{"present", false}, {"why", "this version has no camera drivers"}}},
             {"frames", frames_json(report)},
             {"effects", effects_now_json(facts, last)},
+            {"adjusted", answer_json(facts.adjusted)},
             {"photometry", photometry_json(facts, report)},
             {"errors", errors}};
 }

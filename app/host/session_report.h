@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/config.h"
+#include "app/live_settings.h"
 #include "compositor/report.h"
 #include "compositor/service.h"
 #include "interfaces/runtime_host.h"
@@ -21,6 +22,7 @@ struct SessionFacts {
     std::string eye_tracker;   // what it is, or why it is absent
     LayerLuminance luminance;  // for layers that do not say
     perception::Selection selection;
+    SettingsAnswer adjusted;  // to the last `entoptic set`
 };
 
 // Where the luminance of the layers comes from, in words.
