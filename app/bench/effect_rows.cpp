@@ -35,18 +35,27 @@ const ParameterInfo* parameter_of(const Choice& choice, std::string_view name) {
 }
 
 struct Variant {
-    std::string slot, setting;  // setting empty: default
+    const ModelEntry* entry;
+    std::string setting;     // empty: default
+
+    std::string slot() const { return std::string(entry->slot); }
+    std::vector<std::string> models() const { return {fmt::format("{}={}", entry->slot, entry->name)}; }
+    std::vector<std::string> settings() const {
+        return setting.empty() ? std::vector<std::string>{} : std::vector{fmt::format("{}.{}", entry->slot, setting)};
+    }
 };
 
-std::vector<Variant> variants_of(const Choice& choice) {
-    std::vector<Variant> list{{std::string(choice.entry->slot), ""}};
+// The model with the parameters that the preset gives it, and each setting that trades time for error.
+Result<std::vector<Variant>> variants_of(const ModelEntry& entry, const std::string& preset) {
+    std::vector<Variant> list{{&entry, ""}};
+    ENTOPTIC_TRY(selection, select(preset, list[0].models()));
+    const Choice& choice = *selection.find(entry.slot);
     for (const Trade& trade : trades()) {
-        const ParameterInfo* p = trade.slot == choice.entry->slot ? parameter_of(choice, trade.parameter) : nullptr;
+        const ParameterInfo* p = trade.slot == entry.slot ? parameter_of(choice, trade.parameter) : nullptr;
         if (!p) continue;
         const double chosen = static_cast<double>(choice.parameters[std::size_t(p - choice.entry->parameters.data())]);
         for (const double value : trade.values)
-            if (value >= static_cast<double>(p->min) && value <= static_cast<double>(p->max) && value != chosen)
-                list.push_back({std::string(trade.slot), fmt::format("{}={:g}", trade.parameter, value)});
+            if (p->allows(value) && value != chosen) list.push_back({&entry, fmt::format("{}={:g}", trade.parameter, value)});
     }
     return list;
 }
@@ -74,12 +83,18 @@ public:
 
     Result<std::vector<EffectRow>> run() {
         ENTOPTIC_TRY(preset, select(o_.preset));
-        std::vector<std::pair<Choice, Variant>> all;
-        for (const Choice& choice : preset.choices)
-            for (const Variant& variant : variants_of(choice)) all.emplace_back(choice, variant);
+        std::vector<Variant> all;
+        for (const ModelEntry* entry : models()) {
+            const Choice* choice = preset.find(entry->slot);
+            const bool in_preset = choice && choice->entry == entry;
+            if (!in_preset && !o_.all_models) continue;
+            ENTOPTIC_TRY(variants, variants_of(*entry, o_.preset));
+            all.insert(all.end(), variants.begin(), variants.end());
+        }
         std::vector<EffectRow> rows;
-        for (const auto& [choice, variant] : all) {
-            ENTOPTIC_TRY(row, measure(choice, variant));
+        for (const Variant& variant : all) {
+            const Choice* choice = preset.find(variant.entry->slot);
+            ENTOPTIC_TRY(row, measure(variant, choice && choice->entry == variant.entry));
             rows.push_back(std::move(row));
             if (o_.progress) o_.progress(rows.size(), all.size());
         }
@@ -87,11 +102,11 @@ public:
     }
 
 private:
-    Result<EffectRow> measure(const Choice& choice, const Variant& variant) {
-        EffectRow row{variant.slot,
-                      std::string(choice.entry->name),
+    Result<EffectRow> measure(const Variant& variant, bool in_preset) {
+        EffectRow row{variant.slot(),
+                      std::string(variant.entry->name),
                       variant.setting.empty() ? "default" : variant.setting,
-                      variant.setting.empty(),
+                      in_preset && variant.setting.empty(),
                       {},
                       {}};
         ENTOPTIC_TRY(time, time_of(variant));
@@ -100,13 +115,9 @@ private:
         row.error = error;
         return row;
     }
-    static std::vector<std::string> settings_of(const Variant& variant) {
-        if (variant.setting.empty()) return {};
-        return {fmt::format("{}.{}", variant.slot, variant.setting)};
-    }
 
     Result<Percentiles> time_of(const Variant& variant) {
-        ENTOPTIC_TRY(selection, select(o_.preset, {}, settings_of(variant)));
+        ENTOPTIC_TRY(selection, select(o_.preset, variant.models(), variant.settings()));
         ENTOPTIC_TRY(stage, Stage::create(device_, {{bench_geometry(o_.width, o_.height)}, {}, selection, 1}));
         ENTOPTIC_TRY(commands, gpu::Commands::create(device_, "bench"));
         constexpr int warm_up = 2;  // pipelines are compiled at their first dispatch
@@ -119,45 +130,44 @@ private:
             ENTOPTIC_CHECK(commands.wait());
             double ms = 0;
             for (const gpu::StageTime& t : commands.stage_times())
-                if (t.name == "perceive." + variant.slot) ms += t.ms;
+                if (t.name == "perceive." + variant.slot()) ms += t.ms;
             if (i >= warm_up) times.push_back(ms);
         }
         return percentiles(std::move(times));
     }
 
-    // The slot with adaptation and tone, without which nothing of it could be displayed.
-    Result<Selection> alone(const std::string& slot, const std::vector<std::string>& settings) const {
+    // The model with adaptation and tone, without which nothing of it could be displayed.
+    Result<Selection> alone(const Variant& variant, const std::vector<std::string>& settings) const {
         ENTOPTIC_TRY(whole, select(o_.preset));
-        std::vector<std::string> models;
+        std::vector<std::string> models = variant.models();
         for (const Choice& choice : whole.choices)
-            if (choice.entry->slot != "adaptation" && choice.entry->slot != "tone" && choice.entry->slot != slot)
+            if (choice.entry->slot != "adaptation" && choice.entry->slot != "tone" && choice.entry->slot != variant.entry->slot)
                 models.push_back(fmt::format("{}=none", choice.entry->slot));
         return select(o_.preset, models, settings);
     }
     Result<PictureError> error_of(const Variant& variant) {
-        ENTOPTIC_TRY(selection, alone(variant.slot, settings_of(variant)));
+        ENTOPTIC_TRY(selection, alone(variant, variant.settings()));
         ENTOPTIC_TRY(gpu, make_gpu_simulator(device_, options_for(selection)));
         ENTOPTIC_CHECK(gpu->frame(scene_, depth_, steady_input(0), true));
-        ENTOPTIC_TRY(truth, truth_of(variant.slot));
+        ENTOPTIC_TRY(truth, truth_of(variant));
         return compare(gpu->picture(), *truth);
     }
     SimulatorOptions options_for(const Selection& selection) const {
         return {bench_geometry(o_.error_width, o_.error_height), {}, selection, 1};
     }
 
-    Result<const ImageF*> truth_of(const std::string& slot) {
-        if (const auto known = truths_.find(slot); known != truths_.end()) return &known->second;
-        ENTOPTIC_TRY(whole, select(o_.preset));
+    Result<const ImageF*> truth_of(const Variant& variant) {
+        const std::string name(variant.entry->name);
+        if (const auto known = truths_.find(name); known != truths_.end()) return &known->second;
         std::vector<std::string> finest;
-        for (const Trade& trade : trades()) {
-            const Choice* choice = trade.slot == slot ? whole.find(slot) : nullptr;
-            if (choice && parameter_of(*choice, trade.parameter))
-                finest.push_back(finest_setting(trade, *parameter_of(*choice, trade.parameter)));
-        }
-        ENTOPTIC_TRY(selection, alone(slot, finest));
+        for (const Trade& trade : trades())
+            if (trade.slot == variant.entry->slot)
+                for (const ParameterInfo& p : variant.entry->parameters)
+                    if (trade.parameter == std::string_view(p.name)) finest.push_back(finest_setting(trade, p));
+        ENTOPTIC_TRY(selection, alone(variant, finest));
         const auto reference = make_reference_simulator(options_for(selection));
         ENTOPTIC_CHECK(reference->frame(scene_, depth_, steady_input(0), true));
-        return &(truths_[slot] = reference->picture());
+        return &(truths_[name] = reference->picture());
     }
     static std::string finest_setting(const Trade& trade, const ParameterInfo& p) {
         return fmt::format("{}.{}={}", trade.slot, trade.parameter,
@@ -168,7 +178,7 @@ private:
     gpu::Device& device_;
     const EffectBenchOptions& o_;
     ImageF scene_, timed_scene_, depth_, timed_depth_;
-    std::map<std::string, ImageF> truths_;
+    std::map<std::string, ImageF> truths_;  // by model
 };
 
 PictureError Bench::compare(const ImageF& got_raw, const ImageF& wanted_raw) {

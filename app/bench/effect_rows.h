@@ -1,4 +1,4 @@
-// Speed against error of every effect of a preset, at its default and at other settings worth comparing.
+// Speed against error of every model, at its default and at other settings worth comparing, within a preset.
 #pragma once
 
 #include "base/result.h"
@@ -25,13 +25,14 @@ struct PictureError {
 
 struct EffectRow {
     std::string effect, model, setting;  // setting: "default" or "wavelengths=3"
-    bool is_default = false;
-    Percentiles time_ms;  // GPU time of the effect's own stage in a frame of the whole preset
+    bool is_default = false;            // what the preset does
+    Percentiles time_ms;  // GPU time of the effect's own stage in a frame of the whole preset, with this model in its slot
     PictureError error;   // with only what it needs to be shown, against the double-precision references
 };
 
 struct EffectBenchOptions {
     std::string preset;
+    bool all_models = true;                     // false: only those of the preset
     int width = 720, height = 800;              // for the times, one eye
     int error_width = 180, error_height = 200;  // for the errors: references are slow
     int frames = 10;                            // timed ones

@@ -28,8 +28,8 @@ Result<void> write_plot(const std::string& path, const std::vector<EffectRow>& r
         const double px = x.at(time_of(row)), py = y.at(error_of(row));
         dots += fmt::format(
             "<circle cx='{:.1f}' cy='{:.1f}' r='5' fill='{}' stroke='#246'/><text x='{:.1f}' y='{:.1f}' font-size='10'>{} {}</text>\n", px,
-            py, row.is_default ? "#246" : "white", px + 8, py + 3, svg::escaped(row.effect),
-            row.is_default ? "" : svg::escaped(row.setting));
+            py, row.is_default ? "#246" : "white", px + 8, py + 3, svg::escaped(row.model),
+            row.setting == "default" ? "" : svg::escaped(row.setting));
     }
     return svg::write_plot_file(path, {title, "", "GPU time, ms (median)", "error, dE_ITP (99th percentile; 1 is just noticeable)"}, x, y,
                                 dots);
