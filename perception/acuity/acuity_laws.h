@@ -35,13 +35,4 @@ inline ImageF chequered(int width, int height, float y) {
     return picture;
 }
 
-// The largest luminance (cd/m²) between two for which `acts` holds, when it holds below a bound only.
-template <class Acts> double largest_luminance(double low, double high, Acts acts) {
-    while (high / low > 1 + 1e-6) {
-        const double middle = std::sqrt(low * high);
-        (acts(middle) ? low : high) = middle;
-    }
-    return low;
-}
-
 }  // namespace entoptic::perception::testing

@@ -2,6 +2,7 @@
 #include "perception/dof/liu_range_math.glsl"
 #include "perception/dof/dof.h"
 #include "perception/testing/dof_scenes.h"
+#include "perception/testing/gate_sweep.h"
 #include "perception/testing/harness.h"
 #include "perception/testing/oracles.h"
 
@@ -136,16 +137,18 @@ TEST(LiuRange, GateIsExactAndStrengthZeroIsOff) {
     const ImageF picture = textured(64, 40, 30);
     const EyeGeometry g = rectilinear(64, 40, 4.6);
     StageRunner runner({g}, model({"focus_dioptre=1"}));
-    int ran = 0, gated = 0;
+    GateCount count;
     const double h = dof::depth_of_field_dioptre(4.49, 1.0);
-    for (double place : {-9.0, -1.1, -1.02, -0.98, -0.9, -0.3, 0.0, 0.3, 0.9, 0.98, 1.02, 1.1, 9.0}) {
+    for (double factor : factors_around_bound(104, 1)) {
+        // In front of the focus and behind it by turns, as far as there is anything behind it.
+        const double place = factor * h < 0.9 && count.ran % 2 == count.gated % 2 ? -factor : factor;
         const ImageF out = runner.run(picture, looking(), distance(64, 40, static_cast<float>(1 / (1 + place * h))));
         const EffectOutcome effect = runner.stage().effects().at(0);
-        EXPECT_EQ(effect.gated, std::abs(place) < 1) << place;
-        ++(effect.gated ? gated : ran);
+        EXPECT_EQ(effect.gated, factor < 1) << place;
+        count.add(effect.gated, factor);
         if (effect.gated) { EXPECT_EQ(out.data, picture.data); }
     }
-    EXPECT_GE(std::min(ran, gated), 5);
+    count.expect_both_outcomes();
     StageRunner off({g}, model({"strength=0"}));
     EXPECT_EQ(off.run(picture, looking(), distance(64, 40, 0.2f)).data, picture.data);
 }

@@ -1,6 +1,7 @@
 // labels: gpu
 #include "perception/glare/cie135_math.glsl"
 #include "perception/glare/cie135_params.h"
+#include "perception/glare/glare_gate_law.h"
 #include "perception/glare/glare_testing.h"
 
 #include <cstring>
@@ -82,6 +83,8 @@ TEST(Cie135, WithinThePanelsWhiteNothingHappens) {
     EXPECT_TRUE(glare.outcome().gated);
     EXPECT_EQ(0, std::memcmp(out.data.data(), bright.data.data(), out.data.size() * sizeof(float)));
 }
+
+TEST(Cie135, GateIsExactOnBothSides) { expect_exact_gate(model(), 40); }
 
 }  // namespace
 }  // namespace entoptic::perception

@@ -1,6 +1,7 @@
 // labels: gpu
 #include "perception/glare/closed_form_math.glsl"
 #include "perception/glare/closed_form_params.h"
+#include "perception/glare/glare_gate_law.h"
 #include "perception/glare/glare_testing.h"
 
 #include <cstring>
@@ -127,23 +128,7 @@ TEST(ClosedForm, WithinThePanelsWhiteNothingChanges) {
     EXPECT_LT(summary(relative_errors(out, in, 1)).max, 1e-3);
 }
 
-TEST(ClosedForm, GateIsExactOnBothSides) {
-    const EyeGeometry g = rectilinear(64, 64, 60);
-    Glare glare(g, model());
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> near_white(0.85f, 1.15f);
-    int ran = 0, gated = 0;
-    for (int i = 0; i < 24; ++i) {
-        const float top = white * near_white(random);
-        ImageF in = room(64, 64, top);
-        const ImageF out = glare.at(in);
-        EXPECT_EQ(glare.outcome().gated, top <= white);
-        EXPECT_EQ(same(in, out), top <= white);
-        ++(glare.outcome().gated ? gated : ran);
-    }
-    EXPECT_GT(ran, 5);
-    EXPECT_GT(gated, 5);
-}
+TEST(ClosedForm, GateIsExactOnBothSides) { expect_exact_gate(model(), 104); }
 
 TEST(ClosedForm, GrowsFromNothingWithoutAStep) {
     const EyeGeometry g = rectilinear(64, 64, 10);

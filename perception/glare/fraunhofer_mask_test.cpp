@@ -2,6 +2,7 @@
 // fraunhofer_mask on the GPU: against its reference, laws, billboards against transforms, zones, files, gate, states.
 #include "base/image_io.h"
 #include "perception/glare/fraunhofer_mask_tables.h"
+#include "perception/glare/glare_gate_law.h"
 #include "perception/testing/harness.h"
 #include "perception/testing/oracles.h"
 #include "perception/testing/scenes.h"
@@ -375,6 +376,8 @@ TEST(FraunhoferMask, SameEyeSamePicture) {
     const ImageF second = b.at(in, 3.3f, 0.6f);
     EXPECT_EQ(0, std::memcmp(first.data.data(), second.data.data(), first.data.size() * sizeof(float)));
 }
+
+TEST(FraunhoferMask, GateIsExactOnBothSides) { expect_exact_gate(model(), 40); }
 
 }  // namespace
 }  // namespace entoptic::perception

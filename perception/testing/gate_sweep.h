@@ -21,6 +21,15 @@ inline std::vector<double> factors_around_bound(int count = 120, double decades 
     return factors;
 }
 
+// The largest luminance (cd/m²) between two for which `acts` holds, when it holds below a bound only.
+template <class Acts> double largest_luminance(double low, double high, Acts acts) {
+    while (high / low > 1 + 1e-6) {
+        const double middle = std::sqrt(low * high);
+        (acts(middle) ? low : high) = middle;
+    }
+    return low;
+}
+
 struct GateCount {
     int ran = 0, gated = 0, near_bound = 0;
 

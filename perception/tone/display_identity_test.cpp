@@ -1,5 +1,6 @@
 // labels: gpu
 #include "perception/tone/display_identity_math.glsl"
+#include "perception/testing/gate_sweep.h"
 #include "perception/tone/tone_laws.h"
 
 #include <cstring>
@@ -102,6 +103,23 @@ TEST(DisplayIdentity, KnownToBeWithinTheDisplayIsNeverBrightened) {
     EXPECT_GT(runner.run(uniform(64, 32, 0.01f), input).data[0], 0.05f);
     input.within_display = true;
     EXPECT_TRUE(same_bits(runner.run(nothing_drawn, input), nothing_drawn));
+}
+
+// Light of the panel's range is left alone, to the bit; the brightest channel decides.
+TEST(DisplayIdentity, GateIsExact) {
+    GateCount count;
+    StageRunner runner({rectilinear(32, 16, 60)}, laws.selection());
+    for (double factor : factors_around_bound(120, 2)) {
+        runner.stage().set_adaptation(18);
+        ImageF picture = uniform(32, 16, 10, 12, 8);
+        picture.at(7, 7, 2) = static_cast<float>(130 * factor);
+        const ImageF out = runner.run(picture, still_input(1));
+        const bool is_gated = runner.stage().effects().at(0).gated;
+        count.add(is_gated, factor);
+        EXPECT_EQ(is_gated, factor < 1) << factor;
+        EXPECT_EQ(same_bits(out, picture), factor < 1) << factor;
+    }
+    count.expect_both_outcomes();
 }
 
 TEST(DisplayIdentity, GpuIsTheReference) { laws.gpu_is_the_reference(2e-2); }
