@@ -1,0 +1,79 @@
+#!/bin/sh
+# Makes the pictures on the models' pages, docs/images/models/<model>.png: the demo's office, in light in which the model has something to do,
+# shown for the page by `entoptic simulate` with that model, adaptation and a tone map, and little else. Run it after a build.
+#   tools/pictures.sh [--programs FOLDER, default build/dev/bin] [MODEL...]
+. "$(dirname "$0")/common.sh"
+
+programs=build/dev/bin
+if [ "${1:-}" = --programs ]; then
+    programs=$2
+    shift 2
+fi
+wanted=" $* "
+output=docs/images/models
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$output"
+
+# scene <name> <field of view> <options of the demo...>: the office as a radiance map.
+scene() {
+    name=$1
+    fov=$2
+    shift 2
+    "$programs/entoptic-demo" --offscreen "$work/$name" --size 320x240 --fov "$fov" "$@" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+}
+
+# picture <model> <scene> <field of view> <options of simulate...>: nothing of the base preset is kept but what is named.
+picture() {
+    model=$1
+    map="$work/$2/left.exr"
+    fov=$3
+    shift 3
+    case "$wanted" in *" $model "* | "  ") ;; *) return 0 ;; esac
+    "$programs/entoptic" simulate "$map" -o "$output/$model.png" --fov "$fov" --preset off "$@" >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+    echo "  $output/$model.png"
+}
+night="--model adaptation=krawczyk_exp_log --model tone=key_reinhard"
+
+scene day 60 --light day --lamp off
+scene dusk 60 --light dusk --lamp off
+scene starlight 60 --light starlight --lamp off
+scene charts 24 --light starlight --lamp off --pitch 4
+scene lamp 60 --light night --lamp on
+
+# The eye comes from a lit room (10 cd/m²) and has had a second.
+for model in krawczyk_exp_linear krawczyk_exp_log jacobs_ramp pattanaik_slow; do
+    picture $model dusk 60 --model adaptation=$model --model tone=key_reinhard --adapted-to 10 --at 1
+done
+for model in display_identity key_reinhard naka_rushton; do
+    picture $model lamp 60 --model adaptation=krawczyk_exp_log --model tone=$model
+done
+for model in luidolt_spectral closed_form cie135; do
+    picture $model lamp 60 $night --model glare=$model --pupil 6 --photographic
+done
+picture fraunhofer_mask lamp 60 $night --model glare=fraunhofer_mask --pupil 6 --photographic --set glare.lid_open=0.5
+for model in luidolt_eq12 krawczyk_larson larson_increment jacobs_bands; do
+    picture $model charts 24 $night --model acuity=$model --photographic
+done
+for model in jacobs_mesopic mes2 luidolt_tint krawczyk_tint; do
+    picture $model starlight 60 $night --model mesopic=$model --photographic
+done
+picture rod_noise starlight 60 $night --model noise=rod_noise --photographic
+picture foveal_scotoma starlight 60 $night --model scotoma=foveal_scotoma --photographic --set scotoma.inner_deg=1.8 --set scotoma.outer_deg=4.5
+for model in dioptric_disc liu_range; do
+    picture $model day 60 $night --model dof=$model --set dof.focus_dioptre=3 --pupil 6
+done
+printf 'time_s,blink\n0,0\n1,1\n' >"$work/blink.csv"
+picture blink day 60 $night --trace "$work/blink.csv" --at 1.07 --model eyelid=blink
+
+# Three seconds with the gaze on the burning lamp, then it is switched off.
+case "$wanted" in
+*" jacobs "* | "  ")
+    for i in 00 01 02 03 04 05 06 07 08 09 10 11; do cp "$work/lamp/left.exr" "$work/after_$i.exr"; done
+    cp "$work/starlight/left.exr" "$work/after_12.exr"
+    "$programs/entoptic" simulate "$work/after_%02d.exr" --fps 4 -o "$work/seen_%02d.png" --fov 60 --gaze=-20,-9 --set afterimage.j1=0.1 --preset off $night \
+        --model afterimage=jacobs --photographic >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+    cp "$work/seen_12.png" "$output/jacobs.png"
+    echo "  $output/jacobs.png"
+    ;;
+esac
