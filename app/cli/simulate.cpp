@@ -33,7 +33,7 @@ struct Options {
     SceneOptions scene;
     double fps = 0;
     std::uint64_t seed = 1;
-    bool reference = false, photographic = false, json = false, progress = false;
+    bool reference = false, photographic = false, dither = false, json = false, progress = false;
 };
 
 // The options as values, checked.
@@ -205,7 +205,6 @@ private:
         input.snap = frames_ == 0 && !plan_.adapted_to;
         input.index = frames_++;
         input.eyes = {eye_at(time_s, mean)};
-        last_eye_ = input.eyes[0];
         return simulator_->frame(scene_.rgb, scene_.depth, input, want_picture);
     }
     Result<void> run_still() {
@@ -242,7 +241,7 @@ private:
         const ImageF shown = limited_to_display(simulator_->picture(), display_);
         const double adaptation = decimal(simulator_->view().adaptation_cd_m2);
         if (std::filesystem::path(path).extension() == ".png") {
-            ENTOPTIC_CHECK(write_png(path, display_codes(shown, display_)));
+            ENTOPTIC_CHECK(write_png(path, o_.dither ? dithered_codes(shown, display_, o_.seed, frames_) : display_codes(shown, display_)));
         } else {
             ExrAttributes attributes;
             attributes.white_luminance = 1.0f;
@@ -250,7 +249,7 @@ private:
                                {"entopticPreset", plan_.selection.preset},
                                {"entopticQuantity", "display light, cd/m2"}};
             attributes.numbers = {{"entopticTime", static_cast<float>(time_s)},
-                                  {"entopticPupilMm", last_eye_.pupil_diameter_mm},
+                                  {"entopticPupilMm", simulator_->eye().pupil_diameter_mm},
                                   {"entopticAdaptation", static_cast<float>(adaptation)},
                                   {"entopticDisplayWhite", display_.white_cd_m2},
                                   {"entopticDisplayBlack", display_.black_cd_m2}};
@@ -268,7 +267,7 @@ private:
         return {{"input", file.path},
                 {"output", path},
                 {"time_s", time_s},
-                {"pupil_mm", decimal(last_eye_.pupil_diameter_mm)},
+                {"pupil_mm", decimal(simulator_->eye().pupil_diameter_mm)},
                 {"scene",
                  {{"min_cd_m2", decimal(view.min_y)},
                   {"mean_cd_m2", decimal(view.mean_y)},
@@ -304,7 +303,6 @@ private:
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<Simulator> simulator_;
     std::uint64_t frames_ = 0;
-    EyeInput last_eye_;
     Json outputs_ = Json::array();
 };
 
@@ -358,6 +356,7 @@ void add_simulate(CLI::App& app, Action& action) {
     c->add_option("--seed", o->seed, "Seed of everything random");
     c->add_flag("--reference", o->reference, "Double precision by the independent references, slow");
     c->add_flag("--photographic", o->photographic, "For pictures, not headsets: scatter the whole scene");
+    c->add_flag("--dither", o->dither, "PNG: light between two codes as one of them by chance, each frame anew");
     c->add_option("--report", o->report, "Write what was done as JSON");
     c->add_flag("--json", o->json, "Print the report on standard output");
     c->add_flag("--progress", o->progress, "Tell progress even without a terminal");

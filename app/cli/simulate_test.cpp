@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 
 namespace entoptic::app {
 namespace {
@@ -187,6 +188,13 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
                                    path("trace.csv"), "--at", "0,0.5,1", "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NEAR(outcome.json()["pictures"][1]["pupil_mm"].get<double>(), 4, 1e-5);
+    // A pupil between those of the tracker's white and black frame is one between 2 and 8 mm: (3 - 2.5)/(6 - 2.5) of the way.
+    for (const char* way : {"--progress", "--reference"}) {
+        const auto mapped = entoptic({"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--preset", "off",
+                                      "--model", "pupil=luidolt_pupil", "--json", way});
+        ASSERT_EQ(mapped.status, 0) << mapped.err;
+        EXPECT_NEAR(mapped.json()["pictures"][0]["pupil_mm"].get<double>(), 2 + 6 * 0.5 / 3.5, 1e-5) << way;
+    }
     write("bad.csv", "time_s,pupil_mm\n0,3\n1,17\n");
     expect_error(1, "bad.csv:3", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
     write("worse.csv", "time_s,colour\n");
@@ -217,6 +225,31 @@ TEST_F(Simulate, ABlinkInTheTraceDarkensThePicture) {
     }
     EXPECT_NEAR(seen({"--model", "eyelid=none"})[2], 50, 0.01);
     EXPECT_NEAR(seen({"--preset", "off"})[2], 50, 0.01);
+}
+
+TEST_F(Simulate, DitheredFramesHaveTheRightMean) {
+    // 0.3 cd/m² lies between codes 6 and 7, light of code 100 on a code: the one flickers with the right mean of light, the other stands still.
+    const auto light_of = [](int code) {
+        const double c = code / 255.0;
+        return 0.04 + 129.96 * (c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    };
+    for (const auto& [light, flickers] : {std::pair{0.3, true}, std::pair{light_of(100), false}}) {
+        for (int i = 0; i < 20; ++i) picture("d_" + std::to_string(i) + ".exr", even(32, 32, static_cast<float>(light)));
+        const auto outcome = entoptic({"simulate", path("d_%d.exr"), "-o", path("e_%d.png"), "--fov", "60", "--fps", "30", "--preset", "off", "--dither"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        double sum = 0;
+        std::set<int> codes;
+        std::set<std::vector<std::uint8_t>> pictures;
+        for (int i = 0; i < 20; ++i) {
+            const auto png = read_png(path("e_" + std::to_string(i) + ".png"));
+            ASSERT_TRUE(png) << png.error().message;
+            for (const std::uint8_t code : png->data) sum += light_of(code), codes.insert(code);
+            pictures.insert(png->data);
+        }
+        EXPECT_NEAR(sum / (20.0 * 32 * 32 * 3) / light, 1, flickers ? 2e-3 : 1e-6);
+        EXPECT_EQ(codes.size(), flickers ? 2u : 1u);
+        EXPECT_EQ(pictures.size(), flickers ? 20u : 1u);
+    }
 }
 
 TEST_F(Simulate, ThePupilIsGivenOrModelled) {

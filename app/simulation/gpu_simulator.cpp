@@ -30,6 +30,7 @@ public:
     }
     ImageF picture() const override { return picture_; }
     perception::ViewOutcome view() const override { return stage_->view(0); }
+    perception::EyeInput eye() const override { return stage_->input().eyes[0]; }
     std::vector<perception::EffectOutcome> effects() const override { return stage_->effects(); }
     std::string device() const override { return device_; }
 

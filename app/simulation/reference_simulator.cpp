@@ -1,5 +1,6 @@
 #include "app/simulation/simulator.h"
 
+#include "base/noise.h"
 #include "shaders/colour_math.glsl"
 #include "shaders/geometry.glsl"
 #include "shaders/scene_statistics.h"
@@ -47,12 +48,14 @@ public:
         if (want_picture) each(tone, models_.size(), &ReferenceModel::apply);
         adaptation_ = frame.adaptation_cd_m2;
         focus_ = frame.focus_dioptre;
+        eye_ = frame.eye;
         view_.adaptation_cd_m2 = view_.target_cd_m2 = static_cast<float>(adaptation_);
         if (want_picture) picture_ = convert<float>(frame.image);
         return {};
     }
     ImageF picture() const override { return picture_; }
     ViewOutcome view() const override { return view_; }
+    EyeInput eye() const override { return eye_; }
     std::vector<EffectOutcome> effects() const override {
         std::vector<EffectOutcome> outcomes;
         for (std::size_t i = 0; i < models_.size(); ++i) {
@@ -111,6 +114,7 @@ private:
     std::vector<std::unique_ptr<ReferenceModel>> models_;
     double adaptation_ = 0, focus_ = -1;
     ImageF picture_;
+    EyeInput eye_;
     ViewOutcome view_;
 };
 
@@ -133,6 +137,20 @@ Image8 display_codes(const ImageF& picture, const DisplayRange& display) {
         const double linear = (static_cast<double>(picture.data[i]) - black) / (white - black);
         const double code = 255 * colour::srgb_encode(linear > 0 ? std::min(linear, 1.0) : 0);
         codes.data[i] = static_cast<std::uint8_t>(code + 0.5);
+    }
+    return codes;
+}
+
+Image8 dithered_codes(const ImageF& picture, const DisplayRange& display, std::uint64_t seed, std::uint64_t frame) {
+    Image8 codes(picture.width, picture.height, picture.channels);
+    const double black = static_cast<double>(display.black_cd_m2), white = static_cast<double>(display.white_cd_m2);
+    for (std::size_t i = 0; i < codes.data.size(); ++i) {
+        const double linear = (static_cast<double>(picture.data[i]) - black) / (white - black), light = linear > 0 ? std::min(linear, 1.0) : 0;
+        // A hair above, so that light of a code, rounded, is that code.
+        const double lower = std::min(std::floor(255 * colour::srgb_encode(light) + 1e-4), 254.0);
+        const double below = colour::srgb_decode(lower / 255), above = colour::srgb_decode((lower + 1) / 255);
+        const bool up = uniform01(seed ^ mix64(frame), i) < (light - below) / (above - below) - 1e-6;
+        codes.data[i] = static_cast<std::uint8_t>(lower + up);
     }
     return codes;
 }

@@ -30,6 +30,8 @@ public:
     // Of the last frame that wanted a picture: display light in cd/m², as the models left it.
     virtual ImageF picture() const = 0;
     virtual perception::ViewOutcome view() const = 0;
+    // Of the last frame, as the models were told: a pupil model may have changed the pupil that was given.
+    virtual perception::EyeInput eye() const = 0;
     virtual std::vector<perception::EffectOutcome> effects() const = 0;
     virtual std::string device() const = 0;
 };
@@ -42,5 +44,8 @@ std::unique_ptr<Simulator> make_reference_simulator(const SimulatorOptions& opti
 ImageF limited_to_display(ImageF picture, const perception::DisplayRange& display);
 // Code values of a display with the sRGB curve, from display light.
 Image8 display_codes(const ImageF& picture, const perception::DisplayRange& display);
+// The same, dithered over time (Jacobs et al. 2015): light between two codes is shown as one of them by chance, each pixel and `frame` anew, so
+// that its mean over frames is right.
+Image8 dithered_codes(const ImageF& picture, const perception::DisplayRange& display, std::uint64_t seed, std::uint64_t frame);
 
 }  // namespace entoptic::app
