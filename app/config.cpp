@@ -142,6 +142,12 @@ const Key keys[] = {
          return read_text(n, s, c.hmd, {"virtual", "vive-pro"});
      },
      [](const Config& c) { return c.hmd.value; }, ENTOPTIC_ORIGIN(hmd)},
+    {"eye_tracker", "\"auto\", \"headset\" or \"pupil-labs\"",
+     "who watches the eyes; auto: the virtual headset's own, else eye cameras, else the headset's", false,
+     [](N n, S s, Config& c) {
+         return read_text(n, s, c.eye_tracker, {"auto", "headset", "pupil-labs"});
+     },
+     [](const Config& c) { return c.eye_tracker.value; }, ENTOPTIC_ORIGIN(eye_tracker)},
     {"panel", "\"WIDTHxHEIGHT\", each 16 to 8192", "pixels of the virtual panel, one eye", false, read_panel,
      [](const Config& c) { return fmt::format("{}x{}", c.panel.value.first, c.panel.value.second); }, ENTOPTIC_ORIGIN(panel)},
     {"eye_scale", "a number from 0.1 to 2", "size of the eye image over the panel's", true,

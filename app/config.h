@@ -20,6 +20,7 @@ template <class T> struct Setting {
 
 struct Config {
     Setting<std::string> hmd{"virtual"};
+    Setting<std::string> eye_tracker{"auto"};          // auto | headset | pupil-labs
     Setting<std::pair<int, int>> panel{{1440, 1600}};  // pixels of one eye
     Setting<double> eye_scale{1};                      // eye image over panel
     Setting<double> ipd_mm{63};

@@ -10,6 +10,7 @@
 #include "interfaces/headset.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,11 @@ struct DriverOptions {
 struct Driver {
     const char* name;         // what the user types: "virtual"
     const char* description;  // one line
-    // ErrorKind::missing: the device is not there (a probe goes on); usage: the options are wrong.
+    // ErrorKind::missing: the device is not there (a probe goes on); usage: the options are wrong. Null: the device is no headset.
     Result<Headset> (*open)(const DriverOptions& options);
+    // The device as an eye tracker of its own, to be worn with any headset; missing: it is not there, and why. Null: it is none.
+    // `clock` must be CLOCK_MONOTONIC's and outlive the tracker.
+    Result<std::shared_ptr<EyeSource>> (*open_eyes)(Clock& clock) = nullptr;
 };
 
 // Every driver of drivers.list, in its order. Never null inside.
@@ -39,5 +43,8 @@ const std::vector<const Driver*>& driver_table();
 
 // Opens `options.name`. Errors: usage when there is no such driver (the message lists those there are) and whatever the driver says.
 Result<Headset> open_headset(const DriverOptions& options);
+
+// Opens the eye tracker `name`, or with "auto" the first that is there. Errors as above.
+Result<std::shared_ptr<EyeSource>> open_eye_tracker(const std::string& name, Clock& clock);
 
 }  // namespace entoptic::drivers

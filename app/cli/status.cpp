@@ -3,6 +3,7 @@
 #include "app/cli/output.h"
 #include "app/live_settings.h"
 #include "app/status_file.h"
+#include "drivers/pupil_labs/pupil_labs_device.h"
 #include "gpu/device.h"
 
 #include <fmt/format.h>
@@ -23,6 +24,15 @@ Json device_json() {
             {"exports_memory", d.can_export_memory()}};
 }
 
+Json eye_cameras_json() {
+    const auto found = drivers::find_eye_cameras(drivers::linux_video_system());
+    if (found.empty()) return {{"present", false}, {"why", drivers::no_eye_cameras()}};
+    Json cameras = Json::array();
+    for (const auto& [node, eye] : found)
+        cameras.push_back({{"eye", eye == 0 ? "left" : "right"}, {"name", node.name}, {"path", node.path}, {"bus", node.bus}});
+    return {{"present", true}, {"cameras", cameras}};
+}
+
 Json status_json() {
     Json runtimes = Json::array();
     for (const RunningRuntime& runtime : running_runtimes()) {
@@ -33,6 +43,7 @@ Json status_json() {
     return {{"version", ENTOPTIC_VERSION},
             {"service", {{"running", false}, {"why", "this version has none: the runtime works inside the application"}}},
             {"device", device_json()},
+            {"eye_cameras", eye_cameras_json()},
             {"runtimes", runtimes}};
 }
 
@@ -78,6 +89,10 @@ void print_status(const Json& status) {
         fmt::print("Device: {} ({})\n", text_of(device, "name"), text_of(device, "driver"));
     else
         fmt::print("Device: none. {}\n", text_of(device, "why"));
+    const Json& eyes = status["eye_cameras"];
+    if (!eyes["present"].get<bool>()) fmt::print("Eye cameras: none. {}\n", text_of(eyes, "why"));
+    for (const Json& camera : eyes.value("cameras", Json::array()))
+        fmt::print("Eye camera: {} eye, {} ({})\n", text_of(camera, "eye"), text_of(camera, "name"), text_of(camera, "path"));
     if (status["runtimes"].empty()) fmt::print("No runtime is running. Start one with: entoptic run -- hello_xr -g Vulkan\n");
     for (const Json& runtime : status["runtimes"]) print_runtime(runtime);
 }

@@ -67,6 +67,20 @@ Result<Headset> open_headset(const Config& config, TimeNs start_time) {
     return drivers::open_headset(options);
 }
 
+// Eye cameras in place of the headset's own tracker, where the configuration says so or the headset is a real one.
+Result<void> choose_eye_tracker(const Config& config, Clock& clock, Headset& headset) {
+    const std::string& wanted = config.eye_tracker.value;
+    const bool automatic = wanted == "auto";
+    if (wanted == "headset" || (automatic && config.hmd.value == "virtual")) return {};
+    if (config.clock.value == "lockstep")
+        return usage_error("Eye cameras work in real time only. Use --clock real, or eye_tracker = \"headset\".");
+    auto eyes = drivers::open_eye_tracker(wanted, clock);
+    if (!eyes) return automatic && eyes.error().kind == ErrorKind::missing ? Result<void>{} : forward_error(eyes.error());
+    headset.eye_tracker = eyes->get();
+    headset.owner = std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<EyeSource>>>(headset.owner, *eyes);
+    return {};
+}
+
 LayerLuminance luminance_of(const Config& config, const Photometry& panel) {
     if (!config.luminance.value) return {panel.white_cd_m2 - panel.black_cd_m2, panel.black_cd_m2, LuminanceSource::default_sdr};
     const bool command_line = config.luminance.origin == "command line";
@@ -97,7 +111,8 @@ Result<std::unique_ptr<Host>> Host::create(const ApplicationIdentity& applicatio
 Result<void> Host::start(const ApplicationIdentity& application, const Config& config) {
     facts_.application = application;
     facts_.config = config;
-    ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value, perception::Viewer::wearer));
+    ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value,
+                                           perception::Viewer::wearer));
     facts_.selection = selection;
     if (lockstep())
         clock_ = std::make_unique<VirtualClock>();
@@ -105,6 +120,7 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
         clock_ = std::make_unique<MonotonicClock>();
     ENTOPTIC_TRY(headset, open_headset(config, clock_->now()));
     headset_ = std::move(headset);
+    ENTOPTIC_CHECK(choose_eye_tracker(config, *clock_, headset_));
     facts_.hmd = headset_.display.name;
     facts_.eye_tracker_present = headset_.eye_tracker->present();
     facts_.eye_tracker = headset_.eye_tracker->description();

@@ -1,6 +1,7 @@
 // labels: unit fault
 // Two cameras behind the seam of system calls, showing traced eyes: samples, faults, unplugging, and what the user is told.
 #include "drivers/eye_tracking/gaze_angles.h"
+#include "drivers/pupil_labs/pupil_labs_device.h"
 #include "drivers/pupil_labs/pupil_labs_tracker.h"
 #include "drivers/pupil_labs/testing/traced_eye.h"
 #include "drivers/v4l2_camera/testing/fake_cameras.h"
@@ -77,7 +78,8 @@ TEST(EyeProcessor, TheUpsideDownEyeIsTurnedBack) {
     double up_and_down = 0;
     for (int i = 0; i < 480; ++i) {
         testing::TracedEye eye = eye_at(i % 24);
-        sample = processor.process(frame_of(pictures()[static_cast<std::size_t>(i % 24)], TimeNs{i + 1} * 5'000'000), TimeNs{i + 2} * 5'000'000);
+        sample =
+            processor.process(frame_of(pictures()[static_cast<std::size_t>(i % 24)], TimeNs{i + 1} * 5'000'000), TimeNs{i + 2} * 5'000'000);
         // The picture's down (+y) is up for a camera that hangs upside down.
         if (i >= 456) up_and_down += sample->gaze_direction.y * static_cast<float>(eye.pose.optical_axis.y());
     }
@@ -126,6 +128,21 @@ TEST(EyeProcessor, ExposureGoesToTheMiddleAndStaysInsideThePicturesTime) {
     int exposure = 2;
     for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, std::min(255.0, 6.0 * exposure), 120);
     EXPECT_NEAR(6.0 * exposure, 120, 31);
+}
+
+TEST(PupilLabsDevice, WithoutCamerasItSaysWhatToDo) {
+    if (!find_eye_cameras(linux_video_system()).empty()) return;  // on a developer's machine with the real ones
+    MonotonicClock clock;
+    for (const char* name : {"pupil-labs", "auto"}) {
+        const auto eyes = open_eye_tracker(name, clock);
+        ASSERT_FALSE(eyes);
+        EXPECT_EQ(eyes.error().kind, ErrorKind::missing);
+        EXPECT_NE(eyes.error().message.find("Plug them in"), std::string::npos) << eyes.error().message;
+    }
+    EXPECT_EQ(open_eye_tracker("tobii", clock).error().kind, ErrorKind::usage);
+    DriverOptions options;
+    options.name = "pupil-labs";
+    EXPECT_EQ(open_headset(options).error().kind, ErrorKind::usage) << "it is no headset";
 }
 
 // The tracker with its threads.

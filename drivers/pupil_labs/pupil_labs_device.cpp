@@ -1,0 +1,30 @@
+#include "drivers/pupil_labs/pupil_labs_device.h"
+
+#include "drivers/pupil_labs/pupil_labs_tracker.h"
+
+namespace entoptic::drivers {
+
+namespace {
+
+Result<std::shared_ptr<EyeSource>> open_eyes(Clock& clock) {
+    if (find_eye_cameras(linux_video_system()).empty()) return missing(no_eye_cameras());
+    return std::make_shared<PupilLabsTracker>(clock, PupilLabsOptions{});
+}
+
+}  // namespace
+
+const Driver pupil_labs_driver{"pupil-labs", "Pupil Labs' binocular eye cameras", nullptr, open_eyes};
+
+std::vector<EyeCameraNode> find_eye_cameras(VideoSystem& system) {
+    std::vector<EyeCameraNode> found;
+    for (const CameraNode& node : find_cameras(system))
+        if (const auto eye = eye_of(node.name)) found.push_back({node, *eye});
+    return found;
+}
+
+std::string no_eye_cameras() {
+    return "No Pupil Labs eye camera (\"Pupil Cam... ID0\" or \"ID1\") can be opened. Plug them in, and see that you may open /dev/video* "
+           "(group 'video').";
+}
+
+}  // namespace entoptic::drivers
