@@ -156,6 +156,9 @@ const Key keys[] = {
     {"ipd_mm", "a number from 50 to 80", "distance between the eyes", false,
      [](N n, S s, Config& c) { return read_number(n, s, c.ipd_mm, 50, 80); },
      [](const Config& c) { return fmt::format("{:g}", c.ipd_mm.value); }, ENTOPTIC_ORIGIN(ipd_mm)},
+    {"display", "the name of a file in displays/, without .toml, or a path that ends in it", "readings of the headset's panel", false,
+     [](N n, S s, Config& c) { return read_text(n, s, c.display); }, [](const Config& c) { return shown(c.display.value); },
+     ENTOPTIC_ORIGIN(display)},
     {"clock", "\"real\" or \"lockstep\"", "lockstep: a virtual clock, each frame composed exactly once", false,
      [](N n, S s, Config& c) {
          return read_text(n, s, c.clock, {"real", "lockstep"});

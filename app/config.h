@@ -24,6 +24,7 @@ struct Config {
     Setting<std::pair<int, int>> panel{{1440, 1600}};  // pixels of one eye
     Setting<double> eye_scale{1};                      // eye image over panel
     Setting<double> ipd_mm{63};
+    Setting<std::string> display;  // a file in displays/ or a path; empty: a nominal panel
     Setting<std::string> clock{"real"};  // real | lockstep
     Setting<std::string> script{"still"};
     Setting<bool> ideal_tracker{false};

@@ -104,6 +104,10 @@ Result<void> FramePath::allocate() {
     ENTOPTIC_TRY(codes,
                  gpu::Buffer::create(device_, eye_count * panel.pixels() * sizeof(std::uint32_t), gpu::BufferKind::device, "panel codes"));
     codes_ = std::move(codes);
+    if (options_.measured) {
+        ENTOPTIC_TRY(measured, MeasuredPanelPass::create(device_, *options_.measured));
+        measured_ = std::move(measured);
+    }
     ENTOPTIC_CHECK(commands_.begin());
     commands_.fill(codes_, 0xff000000u);  // passes leave out the tiles that the lens hides
     ENTOPTIC_CHECK(commands_.submit());
@@ -199,7 +203,7 @@ PanelCurve FramePath::curve(const FrameDescription& frame) const {
     const perception::DisplayRange& display = options_.display;
     // 8-bit codes that nothing changes go to the panel as they came. Noise below half a code would leave them alone only if the device's
     // sRGB decoding were better than Vulkan asks: lavapipe 22.3 is off by up to 0.34 of a code (2.5 % of the light, codes below 16).
-    const bool codes_pass = layers_.only_srgb8() && (options_.selection.choices.empty() || is_ordinary());
+    const bool codes_pass = !measured_ && layers_.only_srgb8() && (options_.selection.choices.empty() || is_ordinary());
     return {display.black_cd_m2, 1.0f / (display.white_cd_m2 - display.black_cd_m2),
             options_.dither && !codes_pass ? dither_amplitude : 0.0f, static_cast<std::uint32_t>(frame.index)};
 }
@@ -212,7 +216,8 @@ Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const Ima
     CpuTimes times(options_.stopwatch);
     FrameOutcome outcome;
     const bool simulates = !options_.selection.choices.empty();
-    if (simulates || !options_.fuse || wanted.needs_stages()) ENTOPTIC_CHECK(ensure_stages());
+    const bool fuse = options_.fuse && !measured_;
+    if (simulates || !fuse || wanted.needs_stages()) ENTOPTIC_CHECK(ensure_stages());
     const bool with_depth = simulates && stage_->wants_depth();
     if (with_depth && !depth_) {
         ENTOPTIC_TRY(depth, DepthPass::create(device_, eye_geometry_));
@@ -221,7 +226,7 @@ Result<FrameOutcome> FramePath::compose(const FrameDescription& frame, const Ima
     outcome.problem = collect(frame, images, with_depth);
     times.stage_ended("collect");
     outcome.ordinary = simulates && is_ordinary();
-    outcome.fused = options_.fuse && (!simulates || outcome.ordinary) && !wanted.needs_stages();
+    outcome.fused = fuse && (!simulates || outcome.ordinary) && !wanted.needs_stages();
     ENTOPTIC_CHECK(commands_.begin());
     if (auto recorded = record(frame, wanted, outcome, times); !recorded) {
         vkEndCommandBuffer(commands_.handle());  // so that the next frame can begin
@@ -300,7 +305,7 @@ Result<void> FramePath::record_stages(const FrameDescription& frame, const Wante
     if (wanted.perceive) ENTOPTIC_CHECK(download(*seen.pixels, perceive_download_, "perceive"));
     times.stage_ended("perceive");
     commands_.begin_stage("lens");
-    if (!wanted.lens) {
+    if (!wanted.lens && !measured_) {
         ENTOPTIC_CHECK(lens_->record_codes(commands_, seen, curve(frame), panel()));
         commands_.end_stage();
         times.stage_ended("lens");
@@ -310,9 +315,10 @@ Result<void> FramePath::record_stages(const FrameDescription& frame, const Wante
     commands_.end_stage();
     commands_.barrier();
     times.stage_ended("lens");
-    ENTOPTIC_CHECK(download(*light.light, lens_download_, "lens"));
+    if (wanted.lens) ENTOPTIC_CHECK(download(*light.light, lens_download_, "lens"));
     commands_.begin_stage("panel");
-    lens_->record_panel(commands_, light, curve(frame), panel());
+    if (measured_) measured_->record(commands_, light, curve(frame), panel());
+    else lens_->record_panel(commands_, light, curve(frame), panel());
     commands_.end_stage();
     times.stage_ended("panel");
     return {};
@@ -330,11 +336,11 @@ Result<void> FramePath::download(const gpu::Buffer& from, Download& into, const 
 
 Result<const SeenThroughLensPass*> FramePath::record_seen(gpu::Commands& commands) {
     if (!seen_) {
-        ENTOPTIC_TRY(pass, SeenThroughLensPass::create(device_, panel_geometry_, options_.panel));
+        ENTOPTIC_TRY(pass, SeenThroughLensPass::create(device_, panel_geometry_, options_.panel, measured_.has_value()));
         seen_ = std::move(pass);
     }
     commands.barrier();
-    seen_->record(commands, panel(), options_.display);
+    seen_->record(commands, panel(), measured_ ? measured_->tables() : codes_, options_.display);
     commands.barrier();
     return &*seen_;
 }

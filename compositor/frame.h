@@ -48,6 +48,7 @@ struct FramePathOptions {
     double eye_scale = 1;  // size of the eye image over the panel's, 0.05..2
     std::array<EyeOptics, eye_count> eyes;
     perception::DisplayRange display;
+    MeasuredPanels measured;  // null: a nominal panel. Else frames go the long way, and codes are not passed through
     perception::Selection selection;  // no choices: nothing is simulated
     LensFilter lens_filter = LensFilter::catmull_rom;
     bool dither = true;
@@ -141,6 +142,7 @@ private:
     std::optional<GlancePass> glance_;
     std::optional<DepthPass> depth_;  // made when a model first wants depth
     std::optional<LensPass> lens_;
+    std::optional<MeasuredPanelPass> measured_;
     std::optional<SeenThroughLensPass> seen_;
     Download warp_download_, perceive_download_, lens_download_, panel_download_, seen_download_;
 };

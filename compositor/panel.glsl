@@ -19,11 +19,14 @@ float panel_value(PanelCurve curve, float light) {
     return srgb_encode(clamp((light - curve.black_cd_m2) * curve.inverse_range, 0.0, 1.0)) * 255.0;
 }
 
-// `pixel` counts pixels of both eyes.
-uint panel_codes(PanelCurve curve, vec3 light, uint pixel) {
-    const vec3 value = vec3(panel_value(curve, light.x), panel_value(curve, light.y), panel_value(curve, light.z));
+// Codes with fractions, 0..255, to whole ones. `pixel` counts pixels of both eyes.
+uint dithered(vec3 value, PanelCurve curve, uint pixel) {
     const uvec3 code = uvec3(value + dither_noise(pixel, curve.frame) * curve.dither + 0.5);
     return code.x | code.y << 8 | code.z << 16 | 0xff000000u;
+}
+
+uint panel_codes(PanelCurve curve, vec3 light, uint pixel) {
+    return dithered(vec3(panel_value(curve, light.x), panel_value(curve, light.y), panel_value(curve, light.z)), curve, pixel);
 }
 
 #endif

@@ -1,11 +1,13 @@
 #include "compositor/passes.h"
 
 #include "compositor/eye_view.h"
+#include "compositor/measured_panel_gpu.h"
 
 #include "compositor/clear.comp.h"
 #include "compositor/fused.comp.h"
 #include "compositor/glance.comp.h"
 #include "compositor/lens.comp.h"
+#include "compositor/measured_panel.comp.h"
 #include "compositor/panel.comp.h"
 #include "compositor/seen.comp.h"
 #include "compositor/warp.comp.h"
@@ -274,6 +276,12 @@ Result<void> GlancePass::record(gpu::Commands& commands, const LayerTable& layer
     return {};
 }
 
+// Of 256 pixels each, in rows that no device finds too long.
+gpu::Groups groups_of_pixels(std::uint32_t pixels) {
+    const std::uint32_t groups = gpu::groups_for(pixels, 256), rows = gpu::groups_for(groups, max_groups);
+    return {gpu::groups_for(groups, rows), rows, 1};
+}
+
 Result<LensPass> LensPass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel, PictureSize eye_size,
                                   LensFilter filter) {
     LensPass pass;
@@ -324,8 +332,35 @@ Result<PanelImage> LensPass::record_light(gpu::Commands& commands, SeenImage see
 
 void LensPass::record_panel(gpu::Commands& commands, PanelImage light, const PanelCurve& curve, PanelCodes out) {
     const auto pixels = static_cast<std::uint32_t>(eye_count * out.size.pixels());
-    const std::uint32_t groups = gpu::groups_for(pixels, 256), rows = gpu::groups_for(groups, max_groups);
-    commands.dispatch(panel_, {*light.light, *out.codes}, PanelPush{pixels, curve}, {gpu::groups_for(groups, rows), rows, 1});
+    commands.dispatch(panel_, {*light.light, *out.codes}, PanelPush{pixels, curve}, groups_of_pixels(pixels));
+}
+
+Result<MeasuredPanelPass> MeasuredPanelPass::create(gpu::Device& device, const std::array<MeasuredPanel, eye_count>& panels) {
+    MeasuredPanelPass pass;
+    ENTOPTIC_TRY(tables, gpu::Buffer::create(device, eye_count * sizeof(MeasuredPanelTable), gpu::BufferKind::upload, "measured panel"));
+    for (std::size_t eye = 0; eye < eye_count; ++eye) {
+        const MeasuredPanel& panel = panels[eye];
+        const glm::dmat3 light(panel.light[0], panel.light[1], panel.light[2]);
+        const glm::dmat3 shares = glm::inverse(light);
+        if (!(std::abs(glm::determinant(light)) > 0)) return failure("The measured primaries of the display are not three colours: one is a mixture of the others.");
+        MeasuredPanelTable& table = tables.as<MeasuredPanelTable>()[eye];
+        for (int c = 0; c < 3; ++c) {
+            const auto channel = static_cast<std::size_t>(c);
+            std::copy(panel.curve[channel].begin(), panel.curve[channel].end(), table.share + 256 * channel);
+            table.light[c] = panel.light[channel];
+            table.share_of_light[c] = glm::dvec3(shares[0][c], shares[1][c], shares[2][c]);
+        }
+        table.black = panel.black;
+    }
+    ENTOPTIC_TRY(kernel, gpu::Kernel::create(device, {"measured panel", measured_panel_comp_spv, buffers(0, 3), sizeof(PanelPush), {}}));
+    pass.tables_ = std::move(tables);
+    pass.kernel_ = std::move(kernel);
+    return pass;
+}
+
+void MeasuredPanelPass::record(gpu::Commands& commands, PanelImage light, const PanelCurve& curve, PanelCodes out) {
+    const auto pixels = static_cast<std::uint32_t>(eye_count * out.size.pixels());
+    commands.dispatch(kernel_, {tables_, *light.light, *out.codes}, PanelPush{pixels, curve}, groups_of_pixels(pixels));
 }
 
 Result<FusedPass> FusedPass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel) {
@@ -362,11 +397,11 @@ std::array<std::uint32_t, eye_count> FusedPass::cleaned() const {
 }
 
 Result<SeenThroughLensPass> SeenThroughLensPass::create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel,
-                                                        PictureSize size) {
+                                                        PictureSize size, bool measured) {
     SeenThroughLensPass pass;
     pass.size_ = size;
     ENTOPTIC_TRY(grids, EyeGrids::create(device, panel, tile_width, tile_height, "seen"));
-    ENTOPTIC_TRY(kernel, gpu::Kernel::create(device, {"seen through the lens", seen_comp_spv, buffers(1, 2), sizeof(SeenPush), {}}));
+    ENTOPTIC_TRY(kernel, gpu::Kernel::create(device, {"seen through the lens", seen_comp_spv, buffers(1, 3), sizeof(SeenPush), {measured ? 1u : 0u}}));
     ENTOPTIC_TRY(picture,
                  gpu::Buffer::create(device, eye_count * size.pixels() * sizeof(std::uint32_t), gpu::BufferKind::device, "seen picture"));
     pass.grids_ = std::move(grids);
@@ -377,8 +412,8 @@ Result<SeenThroughLensPass> SeenThroughLensPass::create(gpu::Device& device, con
     return pass;
 }
 
-void SeenThroughLensPass::record(gpu::Commands& commands, PanelCodes codes, perception::DisplayRange display) {
-    commands.dispatch(kernel_, {grids_.geometry(), *codes.codes, picture_},
+void SeenThroughLensPass::record(gpu::Commands& commands, PanelCodes codes, const gpu::Buffer& tables, perception::DisplayRange display) {
+    commands.dispatch(kernel_, {grids_.geometry(), *codes.codes, picture_, tables},
                       SeenPush{size_.width, size_.height, fields_, display.black_cd_m2, display.white_cd_m2},
                       {gpu::groups_for(size_.width, 32), gpu::groups_for(size_.height, 8), eye_count});
 }

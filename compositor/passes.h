@@ -5,6 +5,7 @@
 #include "compositor/images.h"
 #include "compositor/layer_view.h"
 #include "compositor/panel_curve.h"
+#include "interfaces/headset.h"
 #include "compositor/pictures.h"
 #include "gpu/commands.h"
 #include "interfaces/headset.h"
@@ -129,6 +130,21 @@ private:
     LayerKernels kernels_;
 };
 
+using MeasuredPanels = std::shared_ptr<const std::array<MeasuredPanel, eye_count>>;
+
+// PanelImage → PanelCodes of a display that was measured.
+class MeasuredPanelPass {
+public:
+    // Fails where a channel of `panels` sends no light of its own, so that no codes could be found.
+    static Result<MeasuredPanelPass> create(gpu::Device& device, const std::array<MeasuredPanel, eye_count>& panels);
+    void record(gpu::Commands& commands, PanelImage light, const PanelCurve& curve, PanelCodes out);
+    const gpu::Buffer& tables() const { return tables_; }
+
+private:
+    gpu::Buffer tables_;
+    gpu::Kernel kernel_;
+};
+
 enum class LensFilter { bilinear, catmull_rom };
 
 // SeenImage → PanelImage, or straight to PanelCodes.
@@ -168,8 +184,9 @@ private:
 // PanelCodes → what each eye sees through its lens, in a flat view of its field; packed 8-bit sRGB relative to the panel's white.
 class SeenThroughLensPass {
 public:
-    static Result<SeenThroughLensPass> create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel, PictureSize size);
-    void record(gpu::Commands& commands, PanelCodes codes, perception::DisplayRange display);
+    static Result<SeenThroughLensPass> create(gpu::Device& device, const std::array<EyeGeometry, eye_count>& panel, PictureSize size, bool measured = false);
+    // `tables`: of a measured panel; any buffer else.
+    void record(gpu::Commands& commands, PanelCodes codes, const gpu::Buffer& tables, perception::DisplayRange display);
     const gpu::Buffer& picture() const { return picture_; }
     PictureSize size() const { return size_; }
 

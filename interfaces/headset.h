@@ -34,11 +34,19 @@ struct Lens {
     glm::vec2 principal_point{0};                // cx, cy
 };
 
+// One eye's panel as a light meter saw it. A pixel sends what its three channels send at their codes, and the black.
+struct MeasuredPanel {
+    std::array<std::array<float, 256>, 3> curve{};   // by channel and code: share of the light at code 255; 0 at 0, 1 at 255, rising
+    std::array<glm::vec3, 3> light{};                // of each channel at code 255 less its black: linear BT.709, cd/m²
+    glm::vec3 black{0};                              // of code 0 in all channels: linear BT.709, cd/m²
+};
+
 // Light of the panel.
 struct Photometry {
-    float white_cd_m2 = 130;    // code 255 in all channels
-    float black_cd_m2 = 0.04f;  // code 0
-    // Primaries are BT.709 / D65 and the code curve is sRGB's until measured (displays/*.toml).
+    float white_cd_m2 = 130;    // brightest D65 white that both eyes can show; code 255 in all channels of a nominal panel
+    float black_cd_m2 = 0.04f;  // luminance of code 0, the brighter eye's
+    // Null: primaries are BT.709 / D65 and the code curve is sRGB's. Else codes are made from a file in displays/.
+    std::shared_ptr<const std::array<MeasuredPanel, 2>> measured;
 };
 
 struct DisplayIdentity {

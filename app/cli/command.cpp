@@ -71,6 +71,7 @@ int run_command_line(std::vector<std::string> arguments) {
     add_status(app, action);
     add_bench(app, action);
     add_eye(app, action);
+    add_calibrate(app, action);
     add_config(app, action);
     try {
         return parse_and_run(app, std::move(arguments), action);

@@ -23,6 +23,7 @@ void add_set(CLI::App& app, Action& action);
 void add_status(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_eye(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
 void add_config(CLI::App& app, Action& action);
 
 // An option that may be given again and again, one value each time: `--model a=b --model c=d`.

@@ -26,7 +26,7 @@ constexpr int exit_command_not_found = 127;
 
 struct Options {
     std::vector<std::string> application;
-    std::optional<std::string> hmd, panel, clock, script, dump, preset, observer, report, target;
+    std::optional<std::string> hmd, panel, display, clock, script, dump, preset, observer, report, target;
     std::optional<double> eye_scale, luminance;
     std::optional<std::uint64_t> frames, dump_every, seed;
     std::vector<std::string> dump_stages, models, settings;
@@ -85,6 +85,7 @@ Values overlay_values(const Options& o, const std::optional<std::string>& report
     add_text(values, "hmd", o.hmd);
     add_text(values, "panel", o.panel);
     add_number(values, "eye_scale", o.eye_scale);
+    if (o.display) add_text(values, "display", o.display->ends_with(".toml") ? absolute(o.display) : o.display);
     add_text(values, "clock", o.clock);
     add_text(values, "script", script_path(o.script));
     add_number(values, "seed", o.seed);
@@ -235,6 +236,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& application, Action&
     CLI::App* c = app.add_subcommand("run", "Run an OpenXR application under this runtime: entoptic run [options] -- CMD...");
     c->add_option("--hmd", o->hmd, "virtual or vive-pro")->check(CLI::IsMember({"virtual", "vive-pro"}));
     c->add_option("--panel", o->panel, "Pixels of the virtual panel, one eye: 1440x1600");
+    c->add_option("--display", o->display, "Readings of the panel: a file in displays/, or a path that ends in .toml");
     c->add_option("--eye-scale", o->eye_scale, "Size of the eye image over the panel's")->check(CLI::Range(0.1, 2.0));
     c->add_option("--clock", o->clock, "real, or lockstep: each frame composed exactly once on a virtual clock")
         ->check(CLI::IsMember({"real", "lockstep"}));

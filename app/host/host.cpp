@@ -1,6 +1,7 @@
 #include "app/host/host.h"
 
 #include "app/cli/output.h"
+#include "app/display_file.h"
 #include "app/host/eye_size.h"
 #include "app/launch.h"
 #include "app/observer_file.h"
@@ -121,6 +122,11 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
     ENTOPTIC_TRY(headset, open_headset(config, clock_->now()));
     headset_ = std::move(headset);
     ENTOPTIC_CHECK(choose_eye_tracker(config, *clock_, headset_));
+    if (!config.display.value.empty()) {
+        ENTOPTIC_TRY(file, find_display_file(config.display.value));
+        ENTOPTIC_TRY(photometry, measured_photometry(file));
+        headset_.display.photometry = photometry;
+    }
     facts_.hmd = headset_.display.name;
     facts_.eye_tracker_present = headset_.eye_tracker->present();
     facts_.eye_tracker = headset_.eye_tracker->description();
@@ -141,6 +147,7 @@ Result<void> Host::open_compositor() {
     ENTOPTIC_TRY(target, make_target(*device_, facts_, options.path.panel));
     options.path.eye_scale = config.eye_scale.value;
     options.path.display = {headset_.display.photometry.white_cd_m2, headset_.display.photometry.black_cd_m2};
+    options.path.measured = headset_.display.photometry.measured;
     options.path.selection = facts_.selection;
     options.path.seed = config.seed.value;
     options.path.stopwatch = &stopwatch_;

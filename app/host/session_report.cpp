@@ -43,6 +43,7 @@ Json photometry_json(const SessionFacts& facts, const compositor::RunReport& rep
     Json photometry = {{"scale", decimal(facts.luminance.cd_per_unit)},
                        {"offset", decimal(facts.luminance.offset_cd)},
                        {"source", luminance_source(facts)},
+                       {"display", facts.config.display.value.empty() ? "nominal panel: BT.709, sRGB" : facts.config.display.value},
                        {"pixels_cleaned", report.pixels_cleaned}};
     if (facts.luminance.source == LuminanceSource::default_sdr)
         photometry["note"] = "nothing in an SDR picture is brighter than the panel: lamps that the application tone-mapped cannot glare";
