@@ -547,7 +547,7 @@ TEST(Afterimage, GateHoldsItsBoundBothWays) {
         if (!eye.gated()) return ++ran, void();
         ++gated;
         EXPECT_EQ(out.data, colours.data);
-        // After 1e6 cd/m² calcium is all but gone, and what 1 ms brings back differs by 0.013 codes from the reference.
+        // 0.02: after 1e6 cd/m² calcium is all but gone, and what diffuses in from beyond the picture shows in its corners.
         EXPECT_LE(left_out, eye.bound() * 1.01 + 0.02) << light.x << " cd/m² for ever, then " << wait_s << " s";
         EXPECT_LE(eye.bound(), 0.5);
         worst = std::max(worst, left_out);

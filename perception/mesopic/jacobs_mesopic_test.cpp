@@ -54,34 +54,8 @@ TEST(Rods, WhiteKeepsItsLuminanceAndColoursLoseTheirs) {
     EXPECT_EQ(rod_vision::with_rods(rods, {0.3, 7, 0}, 1.0), glm::dvec3(0.3, 7, 0));
 }
 
-TEST(Rods, ResidualShareIsOneWhereThePanelIsNoBrighter) { laws().residual_share_is_one_where_the_panel_is_no_brighter(); }
-TEST(Rods, PictureInThePanelsRangeKeepsItsBits) {
-    laws().panel_range_keeps_its_bits({"mesopic.local_mean_deg=2", "mesopic.local_mean_deg=0"}, {1e-5f, 0.5f, 20.0f});
-}
-TEST(Rods, StrengthZeroIsBitExact) { laws().strength_zero_is_bit_exact(); }
-TEST(Rods, UniformFieldGetsTheOperatorsColour) { laws().uniform_field_gets_the_operators_colour(); }
-TEST(Rods, LampAtNightAndShadowByDayKeepTheirColour) { laws().lamp_at_night_and_shadow_by_day_keep_their_colour(); }
-TEST(Rods, GpuAgreesWithTheReference) {
-    for (const PictureCase& c : {
-             PictureCase{"night 1e-3 brightened 500", rectilinear(180, 120, 20), 1e-3, 0, 500, {}},
-             PictureCase{"dusk 0.1 brightened 8 lamp 1e4", rectilinear(180, 120, 20), 0.1, 1e4, 8, {}},
-             PictureCase{"headset's lens 0.01 brightened 60", vive_lens(360, 400), 0.01, 0, 60, {}},
-             PictureCase{"photographic by pixel 0.05",
-                         rectilinear(211, 97, 30),
-                         0.05,
-                         0,
-                         20,
-                         {"mesopic.photographic=1", "mesopic.local_mean_deg=0", "mesopic.range=2"}},
-             PictureCase{"photographic 104 deg 0.01", rectilinear(301, 177, 104), 0.01, 0, 60, {"mesopic.photographic=1"}},
-         })
-        laws().gpu_is_the_reference(c, {1.0, 0.2, 1.0});
-}
-TEST(Rods, OperatorInFloatIsThatInDouble) { laws().operator_in_float_is_that_in_double(); }
-TEST(Rods, GateHoldsBothWays) { laws().gate_holds_both_ways(); }
-TEST(Rods, ResidualGateHoldsBothWays) { laws().residual_gate_holds_both_ways(); }
-TEST(Rods, MirroredStaysMirrored) { laws().mirrored_stays_mirrored(30, 1e-2, 100, 1e-4); }
-TEST(Rods, HardCasesStayFinite) { laws().hard_cases_stay_finite({"mesopic.photographic=0", "mesopic.photographic=1"}); }
-TEST(Rods, TwoEyesAreTwoPictures) { laws().two_eyes_are_two_pictures(); }
+ENTOPTIC_MESOPIC_LAW_TESTS(Rods, laws());
+TEST(Rods, GpuAgreesWithTheReference) { laws().gpu_is_the_reference_in_all_cases("mesopic.range=2", 0.2); }
 
 }  // namespace
 }  // namespace entoptic::perception

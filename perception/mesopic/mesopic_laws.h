@@ -106,6 +106,18 @@ public:
                 if (is_gated) { EXPECT_EQ(out.data, picture.data); }
             }
     }
+    // `setting`: one of the model's own, tried beside the others. `mean`: the tolerance of the mean dE_ITP.
+    void gpu_is_the_reference_in_all_cases(const std::string& setting, double mean) const {
+        for (const PictureCase& c : {
+                 PictureCase{"night 1e-3 brightened 500", rectilinear(180, 120, 20), 1e-3, 0, 500, {}},
+                 PictureCase{"dusk 0.1 brightened 8 lamp 1e4", rectilinear(180, 120, 20), 0.1, 1e4, 8, {}},
+                 PictureCase{"headset's lens 0.01 brightened 60", vive_lens(360, 400), 0.01, 0, 60, {}},
+                 PictureCase{"photographic by pixel 0.05", rectilinear(211, 97, 30), 0.05, 0, 20,
+                             {"mesopic.photographic=1", "mesopic.local_mean_deg=0", setting}},
+                 PictureCase{"photographic 104 deg 0.01", rectilinear(301, 177, 104), 0.01, 0, 60, {"mesopic.photographic=1"}},
+             })
+            gpu_is_the_reference(c, {1.0, mean, 1.0});
+    }
     void two_eyes_are_two_pictures() const {
         const EyeGeometry g = rectilinear(96, 64, 20);
         StageRunner runner({g, g}, selection({"mesopic.photographic=1"}));
@@ -120,3 +132,20 @@ private:
 };
 
 }  // namespace entoptic::perception::testing
+
+// The laws that need no word of the model's own, as tests of `suite`; `laws`: an expression that gives MesopicLaws.
+#define ENTOPTIC_MESOPIC_LAW_TESTS(suite, laws)                                                                                             \
+    TEST(suite, ResidualShareIsOneWhereThePanelIsNoBrighter) { laws.residual_share_is_one_where_the_panel_is_no_brighter(); }                \
+    TEST(suite, PictureInThePanelsRangeKeepsItsBits) {                                                                                       \
+        laws.panel_range_keeps_its_bits({"mesopic.local_mean_deg=2", "mesopic.local_mean_deg=0"}, {1e-5f, 0.5f, 20.0f});                     \
+    }                                                                                                                                        \
+    TEST(suite, StrengthZeroIsBitExact) { laws.strength_zero_is_bit_exact(); }                                                               \
+    TEST(suite, UniformFieldGetsTheOperatorsColour) { laws.uniform_field_gets_the_operators_colour(); }                                      \
+    TEST(suite, LampAtNightAndShadowByDayKeepTheirColour) { laws.lamp_at_night_and_shadow_by_day_keep_their_colour(); }                      \
+    TEST(suite, OperatorInFloatIsThatInDouble) { laws.operator_in_float_is_that_in_double(); }                                               \
+    TEST(suite, GateHoldsBothWays) { laws.gate_holds_both_ways(); }                                                                          \
+    TEST(suite, ResidualGateHoldsBothWays) { laws.residual_gate_holds_both_ways(); }                                                         \
+    TEST(suite, MirroredStaysMirrored) { laws.mirrored_stays_mirrored(30, 1e-2, 100, 1e-4); }                                                \
+    TEST(suite, HardCasesStayFinite) { laws.hard_cases_stay_finite({"mesopic.photographic=0", "mesopic.photographic=1"}); }                  \
+    TEST(suite, TwoEyesAreTwoPictures) { laws.two_eyes_are_two_pictures(); }                                                                 \
+    static_assert(true, "takes the semicolon")
