@@ -31,13 +31,21 @@ void main() {
     const vec2 px = vec2(pixel) + 0.5;
     bool changed = false;
     const vec3 green = lens_coordinates(view, 1, px);
-    vec3 light = compose_layers(view, 1, px, green, changed);
+    vec3 light = vec3(0.0);
+    if (!special || achromatic) light = compose_layers(view, 1, px, green, changed);
     const vec3 cutoff = geometry[view].r2_cutoff;
     bvec3 shown = bvec3(shows(green, cutoff.g));
     if (!achromatic) {
         const vec3 red = lens_coordinates(view, 0, px), blue = lens_coordinates(view, 2, px);
-        light.r = compose_layers(view, 0, px, red, changed).r;
-        light.b = compose_layers(view, 2, px, blue, changed).b;
+        if (special) {  // a loop: the text of the special layers is long, and lavapipe compiles each copy of it
+            for (uint colour = 0u; colour < 3u; ++colour) {
+                const vec3 at = colour == 0u ? red : colour == 1u ? green : blue;
+                light[colour] = compose_layers(view, colour, px, at, changed)[colour];
+            }
+        } else {
+            light.r = compose_layers(view, 0, px, red, changed).r;
+            light.b = compose_layers(view, 2, px, blue, changed).b;
+        }
         shown = bvec3(shows(red, cutoff.r), shown.g, shows(blue, cutoff.b));
         if (lens_near_edge(geometry[view], px) && any(shown))
             shown = bvec3(lens_shows(geometry[view], 0, px), lens_shows(geometry[view], 1, px), lens_shows(geometry[view], 2, px));

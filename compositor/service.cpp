@@ -154,6 +154,12 @@ bool CompositorService::exit_wanted() const {
     return options_.frame_limit > 0 && log_.counts().displayed >= options_.frame_limit;
 }
 
+std::optional<std::array<float, 2>> CompositorService::adaptation_cd_m2() const {
+    const std::lock_guard lock(mutex_);
+    const std::array<float, 2> cd_m2{last_outcome_.views[0].adaptation_cd_m2, last_outcome_.views[1].adaptation_cd_m2};
+    return cd_m2[0] > 0 && cd_m2[1] > 0 ? std::optional(cd_m2) : std::nullopt;
+}
+
 std::vector<PresentationRecord> CompositorService::presentation_records(std::size_t count) const {
     const std::lock_guard lock(mutex_);
     return log_.records(count);

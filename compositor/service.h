@@ -50,6 +50,7 @@ public:
     void submit_frame(FrameSubmission frame) override;
     void discard_frame(std::uint64_t frame_id) override;
     bool exit_wanted() const override;
+    std::optional<std::array<float, 2>> adaptation_cd_m2() const override;
     std::vector<PresentationRecord> presentation_records(std::size_t count) const override;
 
     RunReport report() const;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,8 @@ public:
     virtual void discard_frame(std::uint64_t frame_id) = 0;
     // True once the configured number of frames has been displayed or the user closed the window: the session should stop.
     virtual bool exit_wanted() const = 0;
+    // What each eye of the simulated observer is adapted to, cd/m², at the last frame shown. Nothing when nothing is simulated.
+    virtual std::optional<std::array<float, 2>> adaptation_cd_m2() const { return std::nullopt; }
     // Records of the last frames, oldest first, at most `count`.
     virtual std::vector<PresentationRecord> presentation_records(std::size_t count) const = 0;
 };

@@ -39,6 +39,7 @@ public:
     }
     void discard_frame(std::uint64_t frame_id) override { service_.discard_frame(frame_id); }
     bool exit_wanted() const override { return service_.exit_wanted(); }
+    std::optional<std::array<float, 2>> adaptation_cd_m2() const override { return service_.adaptation_cd_m2(); }
     std::vector<PresentationRecord> presentation_records(std::size_t count) const override { return service_.presentation_records(count); }
 
 private:

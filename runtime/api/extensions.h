@@ -1,6 +1,8 @@
 // The extensions this runtime offers.
 #pragma once
 
+#include "entoptic/XR_ENTOPTICX_observer.h"
+#include "entoptic/XR_ENTOPTICX_presentation_timing.h"
 #include "entoptic/XR_ENTOPTICX_scene_luminance.h"
 #include "runtime/openxr.h"
 

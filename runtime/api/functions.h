@@ -2,6 +2,8 @@
 // wait_frame. Their contracts are the specification's; the table that leads here is in api/proc_table.cpp.
 #pragma once
 
+#include "entoptic/XR_ENTOPTICX_observer.h"
+#include "entoptic/XR_ENTOPTICX_presentation_timing.h"
 #include "runtime/openxr.h"
 
 namespace entoptic::runtime::api {
@@ -93,6 +95,14 @@ XrResult XRAPI_CALL submit_debug_utils_message(XrInstance instance, XrDebugUtils
 XrResult XRAPI_CALL session_begin_debug_utils_label_region(XrSession session, const XrDebugUtilsLabelEXT* labelInfo);
 XrResult XRAPI_CALL session_end_debug_utils_label_region(XrSession session);
 XrResult XRAPI_CALL session_insert_debug_utils_label(XrSession session, const XrDebugUtilsLabelEXT* labelInfo);
+
+// XR_ENTOPTICX_observer
+XrResult XRAPI_CALL get_observer(XrSession session, const XrObserverGetInfoENTOPTICX* getInfo, XrObserverENTOPTICX* observer);
+
+// XR_ENTOPTICX_presentation_timing
+XrResult XRAPI_CALL enumerate_presentation_timings(XrSession session, const XrPresentationTimingGetInfoENTOPTICX* getInfo,
+                                                   uint32_t timingCapacityInput, uint32_t* timingCountOutput,
+                                                   XrPresentationTimingENTOPTICX* timings);
 
 // OpenXR 1.1, XR_KHR_locate_spaces
 XrResult XRAPI_CALL locate_spaces(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations);

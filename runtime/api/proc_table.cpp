@@ -94,6 +94,9 @@ const Entry table[] = {
     entry<PFN_xrGetInputSourceLocalizedName>("xrGetInputSourceLocalizedName", nullptr, api::get_input_source_localized_name),
     entry<PFN_xrApplyHapticFeedback>("xrApplyHapticFeedback", nullptr, api::apply_haptic_feedback),
     entry<PFN_xrStopHapticFeedback>("xrStopHapticFeedback", nullptr, api::stop_haptic_feedback),
+    entry<PFN_xrGetObserverENTOPTICX>("xrGetObserverENTOPTICX", XR_ENTOPTICX_OBSERVER_EXTENSION_NAME, api::get_observer),
+    entry<PFN_xrEnumeratePresentationTimingsENTOPTICX>(
+        "xrEnumeratePresentationTimingsENTOPTICX", XR_ENTOPTICX_PRESENTATION_TIMING_EXTENSION_NAME, api::enumerate_presentation_timings),
     core_1_1<PFN_xrLocateSpaces>("xrLocateSpaces", api::locate_spaces),
     entry<PFN_xrLocateSpaces>("xrLocateSpacesKHR", XR_KHR_LOCATE_SPACES_EXTENSION_NAME, api::locate_spaces),
     entry<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT", automation, api::set_input_device_active),

@@ -35,15 +35,6 @@ Outcome space_unsupported(XrReferenceSpaceType type) {
                  static_cast<int>(type));
 }
 
-XrSpaceLocationFlags location_flags(const PoseState& state) {
-    XrSpaceLocationFlags flags = 0;
-    if (state.orientation_valid) flags |= XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
-    if (state.position_valid) flags |= XR_SPACE_LOCATION_POSITION_VALID_BIT;
-    if (state.orientation_tracked) flags |= XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
-    if (state.position_tracked) flags |= XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-    return flags;
-}
-
 // XrSpaceVelocity or XrSpaceVelocityData.
 template <class Velocity> void write_velocity(const PoseState& state, Velocity& velocity) {
     velocity.velocityFlags = 0;

@@ -1,5 +1,7 @@
 #include "runtime/api/structure_names.h"
 
+#include "entoptic/XR_ENTOPTICX_observer.h"
+#include "entoptic/XR_ENTOPTICX_presentation_timing.h"
 #include "entoptic/XR_ENTOPTICX_scene_luminance.h"
 
 #include <openxr/openxr_reflection.h>
@@ -11,7 +13,10 @@ namespace entoptic::runtime::api {
 
 const char* structure_name(XrStructureType value) {
     XR_LIST_ENUM_XrStructureType(ENTOPTIC_NAME) ENTOPTIC_XR_NEWER_STRUCTURES(ENTOPTIC_NAME);
-    if (value == XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX) return "XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX";
+    ENTOPTIC_NAME(XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX, 0)
+    ENTOPTIC_NAME(XR_TYPE_OBSERVER_GET_INFO_ENTOPTICX, 0)
+    ENTOPTIC_NAME(XR_TYPE_OBSERVER_ENTOPTICX, 0)
+    ENTOPTIC_NAME(XR_TYPE_PRESENTATION_TIMING_GET_INFO_ENTOPTICX, 0)
     return nullptr;
 }
 

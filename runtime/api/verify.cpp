@@ -89,6 +89,15 @@ Outcome check_view_configuration(const Instance& instance, XrViewConfigurationTy
                  static_cast<int>(type));
 }
 
+XrSpaceLocationFlags location_flags(const PoseState& state) {
+    XrSpaceLocationFlags flags = 0;
+    if (state.orientation_valid) flags |= XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+    if (state.position_valid) flags |= XR_SPACE_LOCATION_POSITION_VALID_BIT;
+    if (state.orientation_tracked) flags |= XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+    if (state.position_tracked) flags |= XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+    return flags;
+}
+
 Pose to_pose(const XrPosef& pose) {
     const XrQuaternionf& q = pose.orientation;
     return {glm::normalize(glm::quat(q.w, q.x, q.y, q.z)), {pose.position.x, pose.position.y, pose.position.z}};

@@ -103,6 +103,7 @@ template <std::size_t size> std::string bounded_text(const char (&text)[size]) {
     return length == size ? std::string() : std::string(text, length);
 }
 
+XrSpaceLocationFlags location_flags(const PoseState& state);
 Pose to_pose(const XrPosef& pose);  // normalised
 XrPosef to_xr(const Pose& pose);
 inline XrVector3f to_xr(glm::vec3 v) { return {v.x, v.y, v.z}; }

@@ -183,7 +183,8 @@ public:
         std::lock_guard lock(mutex_);
         return exit_after >= 0 && submitted_count >= exit_after;
     }
-    std::vector<PresentationRecord> presentation_records(std::size_t) const override { return {}; }
+    std::optional<std::array<float, 2>> adaptation_cd_m2() const override { return adaptation; }
+    std::vector<PresentationRecord> presentation_records(std::size_t) const override { return records; }
 
     // For tests.
     void block_image(std::uint64_t swapchain, std::uint32_t index, bool block) {
@@ -208,6 +209,8 @@ public:
     }
 
     DurationNs period = ns_per_s / 90;
+    std::optional<std::array<float, 2>> adaptation;
+    std::vector<PresentationRecord> records;
     SwapchainRequest last_request;
     std::vector<FrameSubmission> submitted;  // the last 64
     std::vector<std::uint64_t> begun, discarded;

@@ -35,11 +35,15 @@ public:
         observer.time = time;
         return observer;
     }
-    std::optional<RawEyeSample> raw_at(int, TimeNs) override { return std::nullopt; }
+    std::optional<RawEyeSample> raw_at(int eye, TimeNs) override {
+        std::lock_guard lock(mutex);
+        return raw[static_cast<std::size_t>(eye)];
+    }
     bool present() const override { return is_present; }
     std::string description() const override { return "fake"; }
     std::mutex mutex;
     Observer state;
+    std::array<std::optional<RawEyeSample>, 2> raw;
     bool is_present = true;
 };
 
