@@ -4,6 +4,7 @@
 // to see what no code tells; ENTOPTIC_FUZZ_CALLS and ENTOPTIC_FUZZ_SEED make longer and other runs.
 #include "entoptic/XR_ENTOPTICX_observer.h"
 #include "entoptic/XR_ENTOPTICX_presentation_timing.h"
+#include "runtime/objects/handle_table.h"
 #include "runtime/testing/client.h"
 
 #include <cstdlib>
