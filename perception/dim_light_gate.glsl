@@ -22,5 +22,6 @@ void main() {
         darkest = min(darkest, state[view].adaptation_cd_m2);
         runs = runs || (dim_share(state[view].adaptation_cd_m2) > 0.0 && (push.params.photographic > 0.5 || brightens));
     }
+    runs = runs && push.groups > 0u;   // nothing of any view lies where it acts
     ENTOPTIC_SET_EXACT_GATE(gate, runs, push.groups, darkest);
 }

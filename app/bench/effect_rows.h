@@ -34,7 +34,7 @@ struct EffectBenchOptions {
     std::string preset;
     bool all_models = true;                     // false: only those of the preset
     int width = 720, height = 800;              // for the times, one eye
-    int error_width = 180, error_height = 200;  // for the errors: references are slow
+    int error_width = 90, error_height = 100;  // for the errors: references are slow, that of diffraction at a mask most of all
     int frames = 10;                            // timed ones
     std::function<void(std::size_t done, std::size_t total)> progress;
 };

@@ -67,7 +67,7 @@ Result<int> set(const Options& o) {
         document["pid"] = pid;
         print_json(document);
     }
-    if (!answer.error.empty()) return failure(answer.error);
+    if (!answer.error.empty()) return usage_error(answer.error);
     if (!o.json)
         fmt::print("In force in process {}: {}\n", pid,
                    answer.settings.empty() ? "what it was started with" : fmt::format("{}", fmt::join(answer.settings, ", ")));

@@ -93,6 +93,7 @@ TEST(FovealScotoma, GazesThatAreNoneChangeNothing) {
         FrameInput input = still_input(1);
         input.eyes[0].gaze_direction = gaze;
         EXPECT_EQ(runner.run(picture, input).data, picture.data);
+        EXPECT_TRUE(runner.stage().effects().at(0).gated);
     }
 }
 
