@@ -2,12 +2,12 @@
 #pragma once
 
 #include "base/image.h"
+#include "base/testing/ledger.h"
 #include "perception/model.h"
 #include "shaders/colour_math.glsl"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -48,10 +48,7 @@ inline std::vector<OracleRow> oracle(const std::string& name) {
 // |a - b| over |b|, or over `floor` where b is smaller.
 inline double relative_error(double a, double b, double floor = 1e-30) { return std::abs(a - b) / std::max(std::abs(b), floor); }
 
-// One row of the accuracy ledger: bench/ledger/accuracy.csv is made from these lines. No commas in the texts.
-inline void ledger(const char* model, const std::string& setting, const char* metric, double value) {
-    std::printf("LEDGER,%s,%s,%s,%.3g\n", model, setting.c_str(), metric, value);
-}
+using entoptic::testing::ledger;
 
 struct ErrorSummary {
     double max = 0, p99 = 0, mean = 0;
