@@ -25,6 +25,7 @@ struct DriverOptions {
     std::string script = "still";  // virtual headset: a built-in script's name, or the path of a script file
     std::uint64_t seed = 1;        // virtual headset: same seed, same noise
     bool ideal_tracker = false;    // virtual headset: eye tracker without noise, delay, dropouts and spontaneous blinks
+    bool real_time = true;         // the session's clock is CLOCK_MONOTONIC; real devices refuse another
     TimeNs start_time = 0;         // virtual headset: time 0 of the script, in the session's clock
 };
 

@@ -78,6 +78,7 @@ struct Headset {
     EyeSource* eye_tracker = nullptr;   // never null; may say that it is absent
     std::array<ControllerSource*, 2> controllers{};   // left, right; null when there is none
     PresenceSource* presence = nullptr; // null: the headset cannot tell whether somebody wears it
+    StatusSource* status = nullptr;     // null: always there, and nothing more to say
     glm::vec2 play_area_m{0};           // free floor about the world's origin, along x and z, metres; 0 when nobody has measured the room
     std::shared_ptr<void> owner;        // keeps the driver alive
 };

@@ -48,6 +48,20 @@ public:
     virtual bool user_present() = 0;
 };
 
+// How a headset is.
+struct HeadsetStatus {
+    bool present = true;
+    std::string why;                    // why it is absent, for people
+    std::optional<double> ipd_mm;       // distance of its lenses now
+    bool system_button = false;         // pressed
+};
+
+class StatusSource {
+public:
+    virtual ~StatusSource() = default;
+    virtual HeadsetStatus status() const = 0;
+};
+
 // State of a simulated or real hand controller. Superset of what common interaction profiles carry.
 struct ControllerState {
     PoseState grip, aim;              // world

@@ -136,7 +136,7 @@ TEST_F(Command, RunChecksItsOptionsFirst) {
     expect_error(2, "panel", call({"--dump", path("d"), "--dump-stages", "warp,soup"}));
     expect_error(2, "luminance", call({"--luminance", "1e9"}));
     expect_error(2, "no_such_script", call({"--script", "no_such_script"}));
-    expect_error(3, "no driver", call({"--hmd", "vive-pro"}));
+    expect_error(3, "No Vive Pro", call({"--hmd", "vive-pro"}));
     expect_error(1, "no folder", call({"--report", path("nowhere/report.json")}));
     expect_error(2, "nobody", call({"--observer", "nobody"}));
     expect_error(2, "counts an effect twice", call({"--model", "acuity=krawczyk_larson"}));

@@ -6,6 +6,7 @@
 #include "app/observer_file.h"
 #include "app/parse.h"
 #include "drivers/virtual_hmd/virtual_hmd_script.h"
+#include "drivers/vive_pro/vive_pro_connection.h"
 
 #include <algorithm>
 #include <cstring>
@@ -134,8 +135,14 @@ Result<void> check_outputs(const Options& o) {
 // With the configuration underneath: it must be good, too, as its errors would come out in the middle of the application's.
 Result<void> check_against_config(const Options& o) {
     ENTOPTIC_TRY(base, load_config(std::nullopt));
-    if (o.hmd.value_or(base.hmd.value) == "vive-pro")
-        return missing("This version has no driver for a real Vive Pro yet. Use --hmd virtual.");
+    if (o.hmd.value_or(base.hmd.value) == "vive-pro") {
+        if (o.clock.value_or(base.clock.value) == "lockstep")
+            return usage_error("A real headset runs in real time. Use --clock real, or --hmd virtual.");
+        if (drivers::vive_pro::find_headsets(drivers::system_hid_bus()).empty())
+            return missing(
+                "No Vive Pro was found on USB. Plug in its link box and power, and switch it on; `entoptic doctor` says what else can be "
+                "wrong.");
+    }
     std::vector<std::string> models, settings;
     if (!o.preset) {
         models = base.model_names();

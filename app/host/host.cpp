@@ -55,7 +55,6 @@ void tell_launcher(const Config& config, const std::string& message) {
 }
 
 Result<Headset> open_headset(const Config& config, TimeNs start_time) {
-    if (config.hmd.value == "vive-pro") return missing("This version has no driver for a real Vive Pro yet. Use hmd = \"virtual\".");
     drivers::DriverOptions options;
     options.name = config.hmd.value;
     options.panel_width = config.panel.value.first;
@@ -65,6 +64,7 @@ Result<Headset> open_headset(const Config& config, TimeNs start_time) {
     options.seed = config.seed.value;
     options.ideal_tracker = config.ideal_tracker.value;
     options.start_time = start_time;
+    options.real_time = config.clock.value == "real";
     return drivers::open_headset(options);
 }
 

@@ -9,11 +9,11 @@ namespace entoptic::drivers {
 namespace {
 
 constexpr double window_s = 0.5;
-constexpr std::size_t kept_windows = 120;        // a minute: temperature moves crystals more slowly
-constexpr std::size_t windows_for_slope = 8;     // below this the slope of jitter is worse than the crystals' own
-constexpr double largest_slope = 200e-6;         // choice: twice what a cheap crystal has
-constexpr double early_ns = 20e6;                // a sample cannot come before it was taken; drift alone is below 1 ms
-constexpr double late_ns = 500e6;                // late by more for a second of samples: the counter was set back
+constexpr std::size_t kept_windows = 120;     // a minute: temperature moves crystals more slowly
+constexpr std::size_t windows_for_slope = 8;  // below this the slope of jitter is worse than the crystals' own
+constexpr double largest_slope = 200e-6;      // choice: twice what a cheap crystal has
+constexpr double early_ns = 20e6;             // a sample cannot come before it was taken; drift alone is below 1 ms
+constexpr double late_ns = 500e6;             // late by more for a second of samples: the counter was set back
 constexpr int late_samples = 1000;
 
 }  // namespace
@@ -35,7 +35,7 @@ void DeviceClock::restart(std::uint32_t ticks, TimeNs arrival) {
     first_arrival_ = arrival;
     anchors_.clear();
     window_ = {0, 0};
-    offset_ns_ = 0;   // the slope stays: it is the crystal's
+    offset_ns_ = 0;  // the slope stays: it is the crystal's
     late_ = 0;
 }
 
@@ -52,7 +52,7 @@ TimeNs DeviceClock::sample(std::uint32_t ticks, TimeNs arrival) {
     } else {
         const double excess = since_first - nominal_ns(ticks_);
         if (excess < window_.excess || ticks_ == window_start_) window_ = {ticks_, excess};
-        if (anchors_.size() < windows_for_slope && lateness < 0) offset_ns_ += lateness;   // the line goes down at once while it is young
+        if (anchors_.size() < windows_for_slope && lateness < 0) offset_ns_ += lateness;  // the line goes down at once while it is young
         if (nominal_ns(ticks_ - window_start_) > window_s * 1e9) close_window();
     }
     const TimeNs on_line = first_arrival_ + std::llround(line_ns(ticks_));

@@ -19,7 +19,9 @@ struct Bus {
     double ppm = 0;
     std::uint32_t start_ticks = 0;
     TimeNs start = 5 * ns_per_s;
-    std::uint32_t ticks(double t) const { return start_ticks + static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::llround(t * rate * (1 + ppm * 1e-6)))); }
+    std::uint32_t ticks(double t) const {
+        return start_ticks + static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::llround(t * rate * (1 + ppm * 1e-6))));
+    }
     TimeNs arrival(double t, std::uint64_t n) const {
         const double delay = std::min(3.3e-3, 0.2e-3 - 1.2e-3 * std::log(1 - uniform01(7, n)));
         return start + nanoseconds(t + delay);
@@ -39,7 +41,7 @@ double worst_after(const Bus& bus, double settle, double length, DeviceClock& cl
 
 TEST(DeviceClock, FindsTheLineUnderTheJitterAndItsDrift) {
     for (const double ppm : {-30.0, 0.0, 30.0, 100.0}) {
-        const Bus bus{ppm, 0xfff00000u};   // wraps at once, and again after 89 s
+        const Bus bus{ppm, 0xfff00000u};  // wraps at once, and again after 89 s
         DeviceClock clock(rate);
         const double worst = worst_after(bus, 10, 120, clock);
         EXPECT_LT(worst, 0.1e-3) << ppm;
@@ -60,7 +62,7 @@ TEST(DeviceClock, TimesRiseEvenWhenReportsComeInBursts) {
     TimeNs last = 0;
     for (int n = 0; n < 20'000; ++n) {
         const double t = n * 1e-3;
-        const double arrival = std::ceil(t / 0.05) * 0.05 + 1e-4;   // fifty at a time
+        const double arrival = std::ceil(t / 0.05) * 0.05 + 1e-4;  // fifty at a time
         const TimeNs time = clock.sample(bus.ticks(t), bus.start + nanoseconds(arrival));
         ASSERT_GT(time, last);
         last = time;

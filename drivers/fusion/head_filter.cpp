@@ -17,7 +17,7 @@ constexpr double believed_sigmas = 5;
 constexpr int gravity_samples = 10, still_samples = 500;
 // A head on a table: nothing but the sensors' noise (12 and 25 counts). choice: three times that; breathing alone is above it.
 constexpr double still_rate_sd = 8e-3, still_acc_sd = 0.08;
-constexpr double still_rate_limit = 0.15;   // rad/s: above this it is a turn at constant speed, not a bias
+constexpr double still_rate_limit = 0.15;  // rad/s: above this it is a turn at constant speed, not a bias
 
 Matrix3d cross_matrix(const Vector3d& v) {
     Matrix3d m;
@@ -90,10 +90,10 @@ void HeadFilter::inertial(const InertialSample& sample) {
         const Vector3d bias = rate_bias_;
         const Quaterniond heading = q_;
         start(sample);
-        rate_bias_ = bias;   // the sensor is the same
+        rate_bias_ = bias;  // the sensor is the same
         const Vector3d before = heading * -Vector3d::UnitZ(), after = q_ * -Vector3d::UnitZ();
         const double turn = std::atan2(after.x(), -after.z()) - std::atan2(before.x(), -before.z());
-        q_ = Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitY())) * q_;   // keeps its heading: better than none
+        q_ = Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitY())) * q_;  // keeps its heading: better than none
         return;
     }
     const double dt = seconds(sample.time - time_);
@@ -107,7 +107,7 @@ void HeadFilter::inertial(const InertialSample& sample) {
 
 void HeadFilter::propagate(const InertialSample& sample, double dt) {
     const Vector3d rate = sample.rate - rate_bias_, acceleration = sample.acceleration - acc_bias_;
-    const Vector3d mean_rate = dt < 0.01 ? Vector3d((rate + rate_) / 2) : rate;   // the trapezium halves the error of a turning axis
+    const Vector3d mean_rate = dt < 0.01 ? Vector3d((rate + rate_) / 2) : rate;  // the trapezium halves the error of a turning axis
     rate_ = rate;
     const Matrix3d before = q_.toRotationMatrix();
     const Quaterniond middle = q_ * exponential(mean_rate * dt / 2);
@@ -141,7 +141,7 @@ void HeadFilter::gravity_update() {
     const Vector3d felt = gravity_sum_ / gravity_count_;
     gravity_sum_.setZero();
     gravity_count_ = 0;
-    if (tracks_position_) return;   // there the acceleration is a part of the motion, and bearings hold the tilt
+    if (tracks_position_) return;  // there the acceleration is a part of the motion, and bearings hold the tilt
     const double difference = std::abs(felt.norm() - k_.gravity);
     if (difference > 0.3 * k_.gravity) return;
     const Vector3d expected = q_.conjugate() * Vector3d::UnitY(), measured = felt.normalized();
@@ -177,7 +177,7 @@ void HeadFilter::still_update(const Vector3d& mean_rate) {
     const double sd = k_.rate_noise * std::sqrt(1000.0) / std::sqrt(double(still_samples)) + 3e-4;
     const Vector3d off = mean_rate - rate_bias_;
     const double expected = std::sqrt(covariance_.diagonal().segment<3>(rate_b).maxCoeff() + sd * sd);
-    if (off.norm() > believed_sigmas * expected) {   // the bias jumped: a bump, a change of temperature; it has turned the head since
+    if (off.norm() > believed_sigmas * expected) {  // the bias jumped: a bump, a change of temperature; it has turned the head since
         covariance_.diagonal().segment<3>(rate_b).array() += off.squaredNorm();
         covariance_.diagonal().segment<3>(theta).array() += off.squaredNorm() * 0.25;
     }
@@ -239,7 +239,7 @@ void HeadFilter::start_position(const PoseFix& fix) {
     p_ = fix.position + q_ * k_.sensor_in_head;
     v_ = fix.velocity + q_ * rate_.cross(k_.sensor_in_head);
     covariance_.diagonal().segment<3>(pos).setConstant(fix.position_sd * fix.position_sd);
-    covariance_.diagonal().segment<3>(vel).setConstant(0.25);   // (0.5 m/s)²: a fix knows little of it
+    covariance_.diagonal().segment<3>(vel).setConstant(0.25);  // (0.5 m/s)²: a fix knows little of it
     covariance_.diagonal().segment<3>(acc_b).setConstant(k_.initial_acceleration_bias * k_.initial_acceleration_bias);
     tracks_position_ = true;
     last_bearing_ = time_;
@@ -266,7 +266,7 @@ bool HeadFilter::bearing(TimeNs time, double measured, double sd, const Model& m
     const Vector3d sensor = past->head + past->q * k_.sensor_in_head;
     for (int axis = 0; axis < 3; ++axis) {
         const Vector3d e = Vector3d::Unit(axis) * step;
-        const auto turned = [&](const Vector3d& by) {   // about the accelerometer, whose position is the state
+        const auto turned = [&](const Vector3d& by) {  // about the accelerometer, whose position is the state
             const Quaterniond q = past->q * exponential(by);
             return model(q, sensor - q * k_.sensor_in_head);
         };

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double degrees = 180 / std::numbers::pi;
 
 struct Worst {
-    double tilt = 0, all = 0, predicted = 0;   // degrees; predicted: 20 ms ahead
+    double tilt = 0, all = 0, predicted = 0;  // degrees; predicted: 20 ms ahead
 };
 
 Quaterniond quaternion(const glm::quat& q) { return {double(q.w), double(q.x), double(q.y), double(q.z)}; }
@@ -33,7 +33,8 @@ Worst follow(HeadFilter& filter, const HeadMotion& motion, const SensorErrors& e
         worst.tilt = std::max(worst.tilt, tilt_between(filter.orientation(), truth) * degrees);
         worst.all = std::max(worst.all, angle_between(filter.orientation(), truth) * degrees);
         const PoseState ahead = predicted(filter.state(), 0.02);
-        worst.predicted = std::max(worst.predicted, angle_between(quaternion(ahead.pose.orientation), motion.orientation(t + 0.02)) * degrees);
+        worst.predicted =
+            std::max(worst.predicted, angle_between(quaternion(ahead.pose.orientation), motion.orientation(t + 0.02)) * degrees);
     }
     return worst;
 }
@@ -71,12 +72,14 @@ TEST(HeadFilter, FollowsALookAround) {
             const Quaterniond truth = later.orientation(t);
             w.tilt = std::max(w.tilt, tilt_between(filter.orientation(), truth) * degrees);
             w.all = std::max(w.all, angle_between(filter.orientation(), truth) * degrees);
-            w.predicted = std::max(w.predicted, angle_between(quaternion(predicted(filter.state(), 0.02).pose.orientation), later.orientation(t + 0.02)) * degrees);
+            w.predicted = std::max(
+                w.predicted,
+                angle_between(quaternion(predicted(filter.state(), 0.02).pose.orientation), later.orientation(t + 0.02)) * degrees);
         }
         return w;
     }();
     EXPECT_LT(worst.tilt, 0.5);
-    EXPECT_LT(worst.all, 1.5);   // a minute without anything that holds the heading
+    EXPECT_LT(worst.all, 1.5);  // a minute without anything that holds the heading
     EXPECT_LT(worst.predicted, 2.5);
     record("look around for a minute", worst);
 }
@@ -111,7 +114,7 @@ TEST(HeadFilter, ABiasThatJumpsIsLearntAtRest) {
     EXPECT_LT((filter.rate_bias() - errors.rate_bias).norm(), 2e-3);
     EXPECT_LT(worst.tilt, 0.5);
     record("bias jump of 5 deg/s at rest", worst);
-    EXPECT_LT(worst.all, 6);   // the half second until it is believed is lost for the heading
+    EXPECT_LT(worst.all, 6);  // the half second until it is believed is lost for the heading
 }
 
 // Walking, nodding: the head's own accelerations must not tip the world.
@@ -127,7 +130,7 @@ TEST(HeadFilter, AccelerationsDoNotTipTheWorld) {
 
 TEST(HeadFilter, PositionIsTheNecksAndNotTracked) {
     HeadMotion motion;
-    motion.pitch_offset = -0.8;   // looks down
+    motion.pitch_offset = -0.8;  // looks down
     HeadFilter filter;
     EXPECT_FALSE(filter.state().orientation_valid);
     follow(filter, motion, {}, 100, 3);
@@ -142,7 +145,8 @@ TEST(HeadFilter, PositionIsTheNecksAndNotTracked) {
 }
 
 TEST(HeadFilter, StartsUprightFromAnyAttitude) {
-    for (const Vector3d& up : {Vector3d(0, 9.8, 0), Vector3d(9.8, 0, 0), Vector3d(0, -9.8, 0), Vector3d(0.1, -9.79, 0.1), Vector3d(0, 0, 9.8)}) {
+    for (const Vector3d& up :
+         {Vector3d(0, 9.8, 0), Vector3d(9.8, 0, 0), Vector3d(0, -9.8, 0), Vector3d(0.1, -9.79, 0.1), Vector3d(0, 0, 9.8)}) {
         HeadFilter filter;
         filter.inertial({1, up, Vector3d::Zero()});
         EXPECT_NEAR((filter.orientation() * up.normalized()).y(), 1, 1e-9);
@@ -180,14 +184,14 @@ TEST(PoseHistory, InterpolatesPredictsAndGrowsStale) {
         PoseState s;
         s.orientation_valid = s.orientation_tracked = s.velocity_valid = true;
         s.pose.orientation = glm::angleAxis(0.1f * static_cast<float>(i), glm::vec3(0, 1, 0));
-        s.angular_velocity = {0, 100, 0};   // 0.1 rad a ms
+        s.angular_velocity = {0, 100, 0};  // 0.1 rad a ms
         history.push(i * 1'000'000, s);
     }
-    history.push(2'000'000, {});   // too old: left out
+    history.push(2'000'000, {});  // too old: left out
     const auto yaw = [](const PoseState& s) { return 2 * std::atan2(s.pose.orientation.y, s.pose.orientation.w); };
     EXPECT_NEAR(yaw(history.at(4'500'000)), 0.45, 1e-5);
-    EXPECT_NEAR(yaw(history.at(0)), 0.3, 1e-5);            // the oldest of four
-    EXPECT_NEAR(yaw(history.at(7'000'000)), 0.7, 1e-5);    // predicted
+    EXPECT_NEAR(yaw(history.at(0)), 0.3, 1e-5);          // the oldest of four
+    EXPECT_NEAR(yaw(history.at(7'000'000)), 0.7, 1e-5);  // predicted
     EXPECT_TRUE(history.at(100'000'000).orientation_tracked);
     EXPECT_FALSE(history.at(200'000'000).orientation_tracked);
     EXPECT_TRUE(history.at(200'000'000).orientation_valid);

@@ -51,7 +51,7 @@ PoseState PoseHistory::at(TimeNs time) const {
         return out;
     }
     if (time <= entry(0).time) return entry(0).state;
-    std::size_t low = 0, high = count_ - 1;   // entry(low).time < time <= entry(high).time
+    std::size_t low = 0, high = count_ - 1;  // entry(low).time < time <= entry(high).time
     while (high - low > 1) {
         const std::size_t middle = (low + high) / 2;
         (entry(middle).time < time ? low : high) = middle;

@@ -21,8 +21,8 @@ public:
     // `stale_after` past the newest: nobody has measured since. Identity, not valid, before the first push.
     PoseState at(TimeNs time) const;
 
-    static constexpr DurationNs max_prediction = 100'000'000;   // choice: longer is guesswork, and applications ask for no more
-    static constexpr DurationNs stale_after = 150'000'000;      // choice: prediction over the photon time plus a stumble of the bus
+    static constexpr DurationNs max_prediction = 100'000'000;  // choice: longer is guesswork, and applications ask for no more
+    static constexpr DurationNs stale_after = 150'000'000;     // choice: prediction over the photon time plus a stumble of the bus
 
 private:
     struct Entry {

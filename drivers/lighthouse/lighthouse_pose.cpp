@@ -15,15 +15,16 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double bearing_scale = 1e-3;    // rad: residuals in units of a milliradian
-constexpr double up_sd = 0.035;           // rad: the station's accelerometer has steps of 0.5 degrees, the head is not at rest
-constexpr double accepted_rms = 4e-3;     // rad; real windows have 0.03 to 0.4 mrad
+constexpr double bearing_scale = 1e-3;  // rad: residuals in units of a milliradian
+constexpr double up_sd = 0.035;         // rad: the station's accelerometer has steps of 0.5 degrees, the head is not at rest
+constexpr double accepted_rms = 4e-3;   // rad; real windows have 0.03 to 0.4 mrad
 constexpr double nearest_m = 0.2, farthest_m = 12;
-constexpr double least_noise = 5e-5;      // rad; repeatability of a sensor's bearing in recordings
+constexpr double least_noise = 5e-5;  // rad; repeatability of a sensor's bearing in recordings
 
 // pose: angle-axis rotation and translation, station from body. velocity: m/s, station coordinates.
 struct BearingCost {
-    BearingCost(const Vector3d& sensor, const Bearing& bearing, const StationInfo& station) : sensor_(sensor), bearing_(bearing), station_(station) {}
+    BearingCost(const Vector3d& sensor, const Bearing& bearing, const StationInfo& station)
+        : sensor_(sensor), bearing_(bearing), station_(station) {}
     template <class T> bool operator()(const T* pose, const T* velocity, T* residual) const {
         const T in[3] = {T(sensor_.x()), T(sensor_.y()), T(sensor_.z())};
         T out[3];
@@ -53,7 +54,8 @@ struct TurnCost {
         for (int axis = 0; axis < 3; ++axis) {
             T in[3] = {T(axis == 0 ? 1 : 0), T(axis == 1 ? 1 : 0), T(axis == 2 ? 1 : 0)}, out[3];
             ceres::AngleAxisRotatePoint(pose, in, out);
-            for (int i = 0; i < 3; ++i) residual[3 * axis + i] = (out[i] - axes_(i, axis)) / (sd_ * std::numbers::sqrt2);   // each angle moves two axes
+            for (int i = 0; i < 3; ++i)
+                residual[3 * axis + i] = (out[i] - axes_(i, axis)) / (sd_ * std::numbers::sqrt2);  // each angle moves two axes
         }
         return true;
     }
@@ -73,7 +75,7 @@ struct UpCost {
     Vector3d body_, station_;
 };
 
-using Pose = std::array<double, 9>;   // angle-axis, translation, velocity
+using Pose = std::array<double, 9>;  // angle-axis, translation, velocity
 
 Pose pose_of(const Quaterniond& q, const Vector3d& t) {
     const Eigen::AngleAxisd turn(q);
@@ -88,19 +90,24 @@ Isometry3d isometry(const Pose& p) {
     return out;
 }
 
-const Vector3d& point_of(const PoseProblem& problem, const Bearing& b) { return b.point ? *b.point : (*problem.sensors)[b.sensor].position; }
+const Vector3d& point_of(const PoseProblem& problem, const Bearing& b) {
+    return b.point ? *b.point : (*problem.sensors)[b.sensor].position;
+}
 
 void build(const PoseProblem& problem, Pose& pose, ceres::Problem& out) {
     for (const Bearing& b : problem.bearings) {
         auto* cost = new ceres::AutoDiffCostFunction<BearingCost, 1, 6, 3>(new BearingCost(point_of(problem, b), b, problem.station));
-        out.AddResidualBlock(cost, new ceres::HuberLoss(3.0), pose.data(), pose.data() + 6);   // 3 mrad: reflections
+        out.AddResidualBlock(cost, new ceres::HuberLoss(3.0), pose.data(), pose.data() + 6);  // 3 mrad: reflections
     }
     if (problem.up_in_body && problem.up_in_station)
-        out.AddResidualBlock(new ceres::AutoDiffCostFunction<UpCost, 3, 6>(new UpCost(*problem.up_in_body, *problem.up_in_station)), nullptr, pose.data());
+        out.AddResidualBlock(new ceres::AutoDiffCostFunction<UpCost, 3, 6>(new UpCost(*problem.up_in_body, *problem.up_in_station)),
+                             nullptr, pose.data());
     if (problem.turn)
-        out.AddResidualBlock(new ceres::AutoDiffCostFunction<TurnCost, 9, 6>(new TurnCost(*problem.turn, problem.turn_sd)), nullptr, pose.data());
+        out.AddResidualBlock(new ceres::AutoDiffCostFunction<TurnCost, 9, 6>(new TurnCost(*problem.turn, problem.turn_sd)), nullptr,
+                             pose.data());
     if (problem.velocity_sd > 0)
-        out.AddResidualBlock(new ceres::AutoDiffCostFunction<VelocityCost, 3, 3>(new VelocityCost(problem.velocity_sd)), nullptr, pose.data() + 6);
+        out.AddResidualBlock(new ceres::AutoDiffCostFunction<VelocityCost, 3, 3>(new VelocityCost(problem.velocity_sd)), nullptr,
+                             pose.data() + 6);
     else
         out.SetParameterBlockConstant(pose.data() + 6);
 }
@@ -166,13 +173,15 @@ std::vector<Quaterniond> starting_turns(const PoseProblem& problem) {
     if (problem.turn) return {*problem.turn};
     if (problem.up_in_body && problem.up_in_station) {
         const Quaterniond upright = Quaterniond::FromTwoVectors(*problem.up_in_body, *problem.up_in_station);
-        for (int i = 0; i < 12; ++i) turns.push_back(Quaterniond(Eigen::AngleAxisd(i * std::numbers::pi / 6, problem.up_in_station->normalized())) * upright);
+        for (int i = 0; i < 12; ++i)
+            turns.push_back(Quaterniond(Eigen::AngleAxisd(i * std::numbers::pi / 6, problem.up_in_station->normalized())) * upright);
         return turns;
     }
     for (int tip = 0; tip < 6; ++tip) {
         const Quaterniond tipped = tip < 4 ? Quaterniond(Eigen::AngleAxisd(tip * std::numbers::pi / 2, Vector3d::UnitX()))
                                            : Quaterniond(Eigen::AngleAxisd((tip * 2 - 9) * std::numbers::pi / 2, Vector3d::UnitZ()));
-        for (int turn = 0; turn < 8; ++turn) turns.push_back(tipped * Quaterniond(Eigen::AngleAxisd(turn * std::numbers::pi / 4, Vector3d::UnitY())));
+        for (int turn = 0; turn < 8; ++turn)
+            turns.push_back(tipped * Quaterniond(Eigen::AngleAxisd(turn * std::numbers::pi / 4, Vector3d::UnitY())));
     }
     return turns;
 }
@@ -184,14 +193,16 @@ Result<void> add_uncertainty(const PoseProblem& problem, Pose pose, StationPose&
     ceres::CRSMatrix sparse;
     using Normal = Eigen::Matrix<double, 9, 9>;
     Normal normal = Normal::Zero();
-    if (!least_squares.Evaluate({}, nullptr, nullptr, nullptr, &sparse)) return failure("The bearings' equations cannot be evaluated at their solution.");
+    if (!least_squares.Evaluate({}, nullptr, nullptr, nullptr, &sparse))
+        return failure("The bearings' equations cannot be evaluated at their solution.");
     for (int row = 0; row < sparse.num_rows; ++row) {
         Eigen::Matrix<double, 9, 1> j = Eigen::Matrix<double, 9, 1>::Zero();
-        for (auto k = static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row)]); k < static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row) + 1]); ++k)
+        for (auto k = static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row)]);
+             k < static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row) + 1]); ++k)
             j[sparse.cols[k]] = sparse.values[k];
         normal += j * j.transpose();
     }
-    if (problem.velocity_sd <= 0) normal.diagonal().tail<3>().setConstant(1e12);   // known to be at rest
+    if (problem.velocity_sd <= 0) normal.diagonal().tail<3>().setConstant(1e12);  // known to be at rest
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(normal.topLeftCorner<6, 6>());
     if (!(eigen.eigenvalues().minCoeff() > 1e-9 * eigen.eigenvalues().maxCoeff()))
         return failure("The bearings do not determine a pose: too few sensors, or all on a line.");
@@ -207,12 +218,15 @@ Result<void> add_uncertainty(const PoseProblem& problem, Pose pose, StationPose&
 Result<StationPose> solve_pose(const PoseProblem& problem) {
     for (const Bearing& b : problem.bearings)
         if (b.sensor >= problem.sensors->size() || b.axis < 0 || b.axis > 1 || !std::isfinite(b.angle))
-            return failure(fmt::format("A bearing names sensor {}, axis {}; there are {} sensors and two axes.", b.sensor, b.axis, problem.sensors->size()));
+            return failure(fmt::format("A bearing names sensor {}, axis {}; there are {} sensors and two axes.", b.sensor, b.axis,
+                                       problem.sensors->size()));
     const auto seen = seen_sensors(problem);
     if (problem.bearings.size() < 6 || seen.size() < 3)
-        return failure(fmt::format("{} bearings of {} sensors are too few for a pose; 6 of 3 are needed.", problem.bearings.size(), seen.size()));
+        return failure(
+            fmt::format("{} bearings of {} sensors are too few for a pose; 6 of 3 are needed.", problem.bearings.size(), seen.size()));
     const auto horizontal = std::count_if(problem.bearings.begin(), problem.bearings.end(), [](const Bearing& b) { return b.axis == 0; });
-    if (horizontal < 2 || static_cast<std::size_t>(horizontal) + 2 > problem.bearings.size()) return failure("All bearings are of one sweep; both are needed for a pose.");
+    if (horizontal < 2 || static_cast<std::size_t>(horizontal) + 2 > problem.bearings.size())
+        return failure("All bearings are of one sweep; both are needed for a pose.");
     Pose best{};
     double best_cost = 1e300;
     const auto consider = [&](Pose pose, int iterations) {
@@ -224,7 +238,7 @@ Result<StationPose> solve_pose(const PoseProblem& problem) {
         }
     };
     if (problem.start) consider(pose_of(Quaterniond(problem.start->linear()), problem.start->translation()), 30);
-    if (!problem.start || best_cost > double(problem.bearings.size())) {   // a milliradian each: the old pose does not hold any more
+    if (!problem.start || best_cost > double(problem.bearings.size())) {  // a milliradian each: the old pose does not hold any more
         const Vector3d ray = mean_ray(problem);
         for (const Quaterniond& turn : starting_turns(problem)) consider(pose_of(turn, ray * 2.0), 40);
     }

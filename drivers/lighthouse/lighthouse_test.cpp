@@ -58,7 +58,7 @@ TEST(Ootx, EveryWrongBitIsNoticed) {
         auto damaged = bits;
         damaged[i] = !damaged[i];
         OotxDecoder decoder;
-        for (const auto& frame : decode(decoder, damaged)) EXPECT_EQ(frame, from_hex(station_c)) << "bit " << i;   // padding may differ
+        for (const auto& frame : decode(decoder, damaged)) EXPECT_EQ(frame, from_hex(station_c)) << "bit " << i;  // padding may differ
     }
 }
 
@@ -90,13 +90,13 @@ TEST(Station, RecordedDescriptions) {
 TEST(Station, NonsenseIsRefused) {
     auto payload = from_hex(station_b);
     EXPECT_FALSE(parse_station(std::span(payload).first(32)));
-    payload[0] = 0x07;   // protocol
+    payload[0] = 0x07;  // protocol
     EXPECT_FALSE(parse_station(payload));
     payload = from_hex(station_b);
-    payload[7] = 0x7c;   // phase: NaN
+    payload[7] = 0x7c;  // phase: NaN
     EXPECT_FALSE(parse_station(payload));
     payload = from_hex(station_b);
-    payload[20] = payload[21] = payload[22] = 0;   // no up
+    payload[20] = payload[21] = payload[22] = 0;  // no up
     EXPECT_FALSE(parse_station(payload));
 }
 
@@ -124,7 +124,8 @@ std::vector<RoomStation> two_stations() {
         auto payload = from_hex(payloads[i]);
         const Isometry3d pose = looking(at[i], {0, 1.2, 0});
         const Vector3d up = pose.linear().transpose() * Vector3d::UnitY();
-        for (int axis = 0; axis < 3; ++axis) payload[20 + static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[axis] * 127)));
+        for (int axis = 0; axis < 3; ++axis)
+            payload[20 + static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[axis] * 127)));
         out[i] = {pose, *parse_station(payload), ootx_bits(payload)};
     }
     return out;
@@ -145,7 +146,7 @@ TEST(SweepDecoder, FindsEveryHitOfTwoStationsAndTheirDescriptions) {
         }
     }
     EXPECT_GT(hits, 10'000u);
-    EXPECT_LT(worst, 6e-4);   // noise of 5e-5 at 5 sigma, and a flash's start that the best sensor sees up to 10 ticks late
+    EXPECT_LT(worst, 6e-4);  // noise of 5e-5 at 5 sigma, and a flash's start that the best sensor sees up to 10 ticks late
     EXPECT_EQ(decoder.unpaired(), 0u);
     for (int i = 0; i < 2; ++i) {
         ASSERT_TRUE(decoder.station(i)) << i;
@@ -160,7 +161,8 @@ TEST(SweepDecoder, OrderWithinFiveMillisecondsDoesNotMatter) {
         for (const Pulse& p : room.subframe(k)) pulses.push_back(p);
     SweepDecoder sorted, shuffled;
     for (const Pulse& p : pulses) sorted.add(p);
-    for (std::size_t at = 0; at + 9 <= pulses.size(); at += 9) std::reverse(pulses.begin() + static_cast<std::ptrdiff_t>(at), pulses.begin() + static_cast<std::ptrdiff_t>(at) + 9);
+    for (std::size_t at = 0; at + 9 <= pulses.size(); at += 9)
+        std::reverse(pulses.begin() + static_cast<std::ptrdiff_t>(at), pulses.begin() + static_cast<std::ptrdiff_t>(at) + 9);
     for (const Pulse& p : pulses) shuffled.add(p);
     const auto a = sorted.take_hits(), b = shuffled.take_hits();
     ASSERT_GT(a.size(), 300u);
@@ -173,7 +175,8 @@ TEST(SweepDecoder, RandomPulsesDoNoHarm) {
     std::uint64_t n = 0;
     for (int i = 0; i < 200'000; ++i) {
         const std::uint64_t r = mix64(++n);
-        decoder.add({static_cast<std::uint8_t>(r & 31), static_cast<std::uint16_t>(r >> 8), static_cast<std::uint32_t>(i * 300 + static_cast<int>((r >> 32) % (i % 1000 == 0 ? 4'000'000'000u : 5000u)))});
+        decoder.add({static_cast<std::uint8_t>(r & 31), static_cast<std::uint16_t>(r >> 8),
+                     static_cast<std::uint32_t>(i * 300 + static_cast<int>((r >> 32) % (i % 1000 == 0 ? 4'000'000'000u : 5000u)))});
     }
     for (const Hit& hit : decoder.take_hits()) EXPECT_LT(std::abs(hit.angle), 1.6);
 }
@@ -189,7 +192,9 @@ PoseProblem problem_of(const Room& room, std::size_t station, const Isometry3d& 
         const Vector3d p = station_from_head * room.sensors[i].position, n = station_from_head.linear() * room.sensors[i].normal;
         if (room.hidden[i] || n.dot(p.normalized()) > -0.2) continue;
         for (int axis = 0; axis < 2; ++axis)
-            problem.bearings.push_back({axis, static_cast<std::uint8_t>(i), sweep_reading(axis, p.x(), p.y(), p.z(), problem.station) + noise * normal(seed, i * 2 + static_cast<std::size_t>(axis))});
+            problem.bearings.push_back(
+                {axis, static_cast<std::uint8_t>(i),
+                 sweep_reading(axis, p.x(), p.y(), p.z(), problem.station) + noise * normal(seed, i * 2 + static_cast<std::size_t>(axis))});
     }
     return problem;
 }
@@ -202,7 +207,8 @@ Errors pose_errors(const Room& room, bool with_up) {
     Errors out;
     for (std::uint64_t i = 0; i < 25; ++i) {
         const HeadMotion motion{1.0, 0.4, 0.3};
-        const Isometry3d head = Eigen::Translation3d(0.3 * std::sin(double(i)), 1.5, 0.3 * std::cos(double(i))) * motion.orientation(2 + 0.17 * double(i));
+        const Isometry3d head =
+            Eigen::Translation3d(0.3 * std::sin(double(i)), 1.5, 0.3 * std::cos(double(i))) * motion.orientation(2 + 0.17 * double(i));
         PoseProblem problem = problem_of(room, 0, head, 5e-5, i);
         if (with_up) {
             problem.up_in_body = head.linear().transpose() * Vector3d::UnitY();
@@ -252,7 +258,7 @@ TEST(Pose, WhatCannotBeSolvedSaysWhy) {
     PoseProblem problem = problem_of(room, 0, room.world_from_head(0), 0, 1);
     problem.bearings.resize(4);
     EXPECT_FALSE(solve_pose(problem));
-    problem = problem_of(room, 0, room.world_from_head(0), 0.03, 1);   // 30 mrad of noise
+    problem = problem_of(room, 0, room.world_from_head(0), 0.03, 1);  // 30 mrad of noise
     const auto noisy = solve_pose(problem);
     ASSERT_FALSE(noisy);
     EXPECT_NE(noisy.error().message.find("mrad"), std::string::npos);
@@ -288,7 +294,7 @@ Tracked track(Room room, const HeadMotion& motion, double length, double settle,
         const double t = n * 1e-3;
         filter.inertial(drivers::testing::inertial_sample(motion, errors, t, sensor, 0));
         if (event) event(t, room);
-        if (n % 25 == 0)   // three sub-frames in 25 ms
+        if (n % 25 == 0)  // three sub-frames in 25 ms
             for (std::int64_t k = n / 25 * 3 - 3; k < n / 25 * 3; ++k)
                 if (k >= 0)
                     for (const Pulse& pulse : room.subframe(k)) decoder.add(pulse);
@@ -319,8 +325,9 @@ Tracked track(Room room, const HeadMotion& motion, double length, double settle,
 void record(const std::string& setting, const Tracked& t) {
     entoptic::testing::ledger("drivers.lighthouse_tracker", setting, "position worst mm", t.worst_mm);
     entoptic::testing::ledger("drivers.lighthouse_tracker", setting, "orientation worst deg", t.worst_degrees);
-    std::printf("%s: tracked %.3f, used %llu, rejected %llu, stations %d, lost %llu\n", setting.c_str(), t.tracked_share, static_cast<unsigned long long>(t.report.used),
-                static_cast<unsigned long long>(t.report.rejected), t.report.stations, static_cast<unsigned long long>(t.report.lost));
+    std::printf("%s: tracked %.3f, used %llu, rejected %llu, stations %d, lost %llu\n", setting.c_str(), t.tracked_share,
+                static_cast<unsigned long long>(t.report.used), static_cast<unsigned long long>(t.report.rejected), t.report.stations,
+                static_cast<unsigned long long>(t.report.lost));
 }
 
 HeadMotion walking() {
@@ -358,7 +365,7 @@ TEST(Tracker, OneStation) {
 TEST(Tracker, FastRotation) {
     HeadMotion motion = walking();
     motion.yaw = 0.9;
-    motion.yaw_hz = 1.2;   // 390 degrees a second
+    motion.yaw_hz = 1.2;  // 390 degrees a second
     const Tracked t = track(make_room(two_stations()), motion, 14, 6);
     EXPECT_LT(t.worst_mm, 20);
     EXPECT_LT(t.worst_degrees, 1);
@@ -370,7 +377,7 @@ TEST(Tracker, HiddenStationsAreSaidAndComeBack) {
     const auto event = [](double t, Room& room) { room.hidden.assign(32, t > 8 && t < 10); };
     const Tracked t = track(make_room(two_stations()), walking(), 14, 6, event);
     EXPECT_GT(t.report.lost, 0u);
-    EXPECT_LT(t.tracked_share, 0.8);   // two of eight seconds
+    EXPECT_LT(t.tracked_share, 0.8);  // two of eight seconds
     EXPECT_GT(t.tracked_share, 0.6);
     EXPECT_LT(t.worst_mm, 60);
     record("two stations; hidden for 2 s", t);
@@ -381,10 +388,13 @@ TEST(Tracker, HiddenStationsAreSaidAndComeBack) {
 TEST(RealVive, LightOfOneSecondDecodesToThePublishedPoses) {
     const char* folder = std::getenv("ENTOPTIC_DEVICE_DATA");
     if (!folder) {
-        std::fprintf(stderr, "NOT CHECKED: recordings of a real Vive. Set ENTOPTIC_DEVICE_DATA to the folder that holds vive/real_v1_events_1s.txt.\n");
+        std::fprintf(
+            stderr,
+            "NOT CHECKED: recordings of a real Vive. Set ENTOPTIC_DEVICE_DATA to the folder that holds vive/real_v1_events_1s.txt.\n");
         return;
     }
-    std::ifstream events(std::string(folder) + "/vive/real_v1_events_1s.txt"), points(std::string(folder) + "/vive/real_vive_sensors_id_p_n.txt");
+    std::ifstream events(std::string(folder) + "/vive/real_v1_events_1s.txt"),
+        points(std::string(folder) + "/vive/real_vive_sensors_id_p_n.txt");
     ASSERT_TRUE(events && points) << folder;
     std::vector<Sensor> sensors(32, {Vector3d::Zero(), Vector3d::UnitZ()});
     for (std::size_t i; points >> i && i < 32;)
@@ -396,7 +406,8 @@ TEST(RealVive, LightOfOneSecondDecodesToThePublishedPoses) {
         if (id < 32 && duration != 0xffff) decoder.add({static_cast<std::uint8_t>(id), static_cast<std::uint16_t>(duration), ticks});
         for (const Hit& hit : decoder.take_hits()) hits.push_back(hit);
     }
-    std::printf("%zu hits, %llu flashes, %llu unpaired\n", hits.size(), static_cast<unsigned long long>(decoder.flashes()), static_cast<unsigned long long>(decoder.unpaired()));
+    std::printf("%zu hits, %llu flashes, %llu unpaired\n", hits.size(), static_cast<unsigned long long>(decoder.flashes()),
+                static_cast<unsigned long long>(decoder.unpaired()));
     const Vector3d expected[2] = {{1.115, 0.767, -0.792}, {0.957, -0.322, -4.555}};
     // facts 1.9: without calibration 0.415 and 0.035 mrad in the median, with it 0.357 and 0.035; poses are those with calibration.
     const double accepted_rms[2][2] = {{0.46e-3, 0.04e-3}, {0.40e-3, 0.04e-3}};
@@ -414,7 +425,7 @@ TEST(RealVive, LightOfOneSecondDecodesToThePublishedPoses) {
             const std::uint32_t start = hits[from].ticks;
             std::array<std::array<bool, 2>, 32> have{};
             std::size_t at = from;
-            for (; at < hits.size() && hits[at].ticks - start < 2'400'000; ++at) {   // 50 ms
+            for (; at < hits.size() && hits[at].ticks - start < 2'400'000; ++at) {  // 50 ms
                 const Hit& h = hits[at];
                 bool& seen = have[h.sensor][static_cast<std::size_t>(h.axis)];
                 if (h.station != station || seen) continue;
@@ -438,11 +449,11 @@ TEST(RealVive, LightOfOneSecondDecodesToThePublishedPoses) {
         ASSERT_GT(windows, 10);
         EXPECT_EQ(solved, windows);
         std::sort(rms.begin(), rms.end());
-        std::printf("station %d%s: %d windows, median rms %.3f mrad, first t = (%.3f %.3f %.3f)\n", station, calibrated ? " calibrated" : "", windows, rms[rms.size() / 2] * 1e3, positions[0].x(), positions[0].y(), positions[0].z());
+        std::printf("station %d%s: %d windows, median rms %.3f mrad, first t = (%.3f %.3f %.3f)\n", station,
+                    calibrated ? " calibrated" : "", windows, rms[rms.size() / 2] * 1e3, positions[0].x(), positions[0].y(),
+                    positions[0].z());
         EXPECT_LT(rms[rms.size() / 2], accepted_rms[calibrated ? 1 : 0][station]);
-        if (calibrated) {
-            EXPECT_LT((positions[0] - expected[station]).norm(), 0.02);
-        }
+        if (calibrated) { EXPECT_LT((positions[0] - expected[station]).norm(), 0.02); }
     }
 }
 

@@ -11,16 +11,16 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr DurationNs window_length = 50'000'000;      // six half-rotations of each rotor pair
+constexpr DurationNs window_length = 50'000'000;  // six half-rotations of each rotor pair
 constexpr DurationNs search_every = 50'000'000, give_up_after = ns_per_s;
 constexpr std::size_t candidates_needed = 5;
 constexpr double candidates_agree_m = 0.05, candidates_agree_rad = 0.02;
 constexpr double useful_sd_m = 0.1, useful_sd_rad = 0.1;
-constexpr double expected_speed = 0.5;                   // m/s, of a head that walks about
-constexpr DurationNs heading_holds = 60 * ns_per_s;      // the gyroscope's heading drifts by less than heading_sd meanwhile
-constexpr double heading_sd = 0.03;                      // rad
-constexpr double known_sd = 1.5e-4, unknown_sd = 4e-4;   // rad, of a bearing with and without the station's calibration (facts 1.9)
-constexpr int rejected_before_search = 60;               // a station that was moved: half a second of its bearings
+constexpr double expected_speed = 0.5;                  // m/s, of a head that walks about
+constexpr DurationNs heading_holds = 60 * ns_per_s;     // the gyroscope's heading drifts by less than heading_sd meanwhile
+constexpr double heading_sd = 0.03;                     // rad
+constexpr double known_sd = 1.5e-4, unknown_sd = 4e-4;  // rad, of a bearing with and without the station's calibration (facts 1.9)
+constexpr int rejected_before_search = 60;              // a station that was moved: half a second of its bearings
 
 Isometry3d isometry(const Quaterniond& q, const Vector3d& t) {
     Isometry3d out = Isometry3d::Identity();
@@ -37,7 +37,7 @@ double angle(const Isometry3d& a, const Isometry3d& b) { return Quaterniond(a.li
 void LighthouseTracker::set_station(int index, const StationInfo& info) {
     Station& station = stations_[static_cast<std::size_t>(index)];
     if (station.info_known && station.info.id == info.id) return;
-    station.world_from_station.reset();   // another station in its place, or the same one, which is not where it seemed without calibration
+    station.world_from_station.reset();  // another station in its place, or the same one, which is not where it seemed without calibration
     station.info = info;
     station.info_known = true;
     station.candidates.clear();
@@ -51,10 +51,11 @@ void LighthouseTracker::add(const Hit& hit, TimeNs time, HeadFilter& filter) {
     if (!station.world_from_station || !filter.tracks_position() || !filter.past_at(time)) return;
     const Isometry3d station_from_world = station.world_from_station->inverse();
     const Vector3d sensor = sensors_[hit.sensor].position;
-    const bool believed = filter.bearing(time, hit.angle, station.info_known ? known_sd : unknown_sd, [&](const Quaterniond& q, const Vector3d& head) {
-        const Vector3d p = station_from_world * (head + q * sensor);
-        return sweep_reading(hit.axis, p.x(), p.y(), p.z(), station.info);
-    });
+    const bool believed =
+        filter.bearing(time, hit.angle, station.info_known ? known_sd : unknown_sd, [&](const Quaterniond& q, const Vector3d& head) {
+            const Vector3d p = station_from_world * (head + q * sensor);
+            return sweep_reading(hit.axis, p.x(), p.y(), p.z(), station.info);
+        });
     (believed ? report_.used : report_.rejected) += 1;
     if (believed) {
         last_used_ = std::max(last_used_, time);
@@ -122,7 +123,9 @@ void LighthouseTracker::found(const Search& search, const Result<StationPose>& p
 void LighthouseTracker::place(Station& station, const Search& search, const StationPose& pose, HeadFilter& filter) {
     const auto start = [&](const Isometry3d& world_from_station) {
         const Isometry3d world_from_head = world_from_station * pose.station_from_body;
-        filter.start_position({Quaterniond(world_from_head.linear()), world_from_head.translation(), search.velocity + world_from_station.linear() * pose.velocity, std::max(0.005, pose.position_sd), std::max(0.01, pose.orientation_sd)});
+        filter.start_position({Quaterniond(world_from_head.linear()), world_from_head.translation(),
+                               search.velocity + world_from_station.linear() * pose.velocity, std::max(0.005, pose.position_sd),
+                               std::max(0.01, pose.orientation_sd)});
         last_used_ = search.time;
     };
     if (station.world_from_station) {
@@ -131,18 +134,22 @@ void LighthouseTracker::place(Station& station, const Search& search, const Stat
     }
     station.candidates.push_back(isometry(search.world_from_head, search.head) * pose.station_from_body.inverse());
     const auto agrees = [&](const Isometry3d& other) {
-        return distance(other, station.candidates.back()) < candidates_agree_m + 2 * pose.position_sd && angle(other, station.candidates.back()) < candidates_agree_rad + 2 * pose.orientation_sd;
+        return distance(other, station.candidates.back()) < candidates_agree_m + 2 * pose.position_sd &&
+               angle(other, station.candidates.back()) < candidates_agree_rad + 2 * pose.orientation_sd;
     };
-    if (!std::all_of(station.candidates.begin(), station.candidates.end(), agrees)) station.candidates.erase(station.candidates.begin(), station.candidates.end() - 1);
+    if (!std::all_of(station.candidates.begin(), station.candidates.end(), agrees))
+        station.candidates.erase(station.candidates.begin(), station.candidates.end() - 1);
     if (station.candidates.size() < candidates_needed) return;
     // The middle one by position stands for all: no mean of rotations is needed, and one bad solution does not pull it.
     std::vector<Isometry3d> sorted = station.candidates;
     Vector3d mean = Vector3d::Zero();
     for (const Isometry3d& c : sorted) mean += c.translation() / double(sorted.size());
-    std::sort(sorted.begin(), sorted.end(), [&](const Isometry3d& a, const Isometry3d& b) { return (a.translation() - mean).norm() < (b.translation() - mean).norm(); });
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const Isometry3d& a, const Isometry3d& b) { return (a.translation() - mean).norm() < (b.translation() - mean).norm(); });
     station.world_from_station = sorted.front();
     station.candidates.clear();
-    report_.stations = static_cast<int>(std::count_if(stations_.begin(), stations_.end(), [](const Station& s) { return s.world_from_station.has_value(); }));
+    report_.stations = static_cast<int>(
+        std::count_if(stations_.begin(), stations_.end(), [](const Station& s) { return s.world_from_station.has_value(); }));
     if (!filter.tracks_position()) start(*station.world_from_station);
 }
 

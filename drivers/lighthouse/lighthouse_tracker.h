@@ -14,10 +14,10 @@
 namespace entoptic::drivers::lighthouse {
 
 struct TrackerReport {
-    int stations = 0;                        // with a place in the world
-    std::uint64_t used = 0, rejected = 0;    // bearings
-    std::uint64_t lost = 0;                  // times the position was lost and had to be found again
-    double last_rms_mrad = 0;                // of the last pose solution
+    int stations = 0;                      // with a place in the world
+    std::uint64_t used = 0, rejected = 0;  // bearings
+    std::uint64_t lost = 0;                // times the position was lost and had to be found again
+    double last_rms_mrad = 0;              // of the last pose solution
 };
 
 class LighthouseTracker {
@@ -33,9 +33,9 @@ public:
     struct Search {
         int station = 0;
         PoseProblem problem;
-        TimeNs time = 0;                        // of the pose that is wanted: the filter's newest
-        Eigen::Quaterniond world_from_head;     // the filter's then
-        Eigen::Vector3d head, velocity;         // the filter's; the solution's velocity is added to this one
+        TimeNs time = 0;                     // of the pose that is wanted: the filter's newest
+        Eigen::Quaterniond world_from_head;  // the filter's then
+        Eigen::Vector3d head, velocity;      // the filter's; the solution's velocity is added to this one
     };
     std::optional<Search> due(const HeadFilter& filter);
     void found(const Search& search, const Result<StationPose>& pose, HeadFilter& filter);
@@ -50,10 +50,10 @@ private:
     struct Station {
         StationInfo info;
         bool info_known = false;
-        std::deque<std::pair<TimeNs, Bearing>> window;   // 50 ms
+        std::deque<std::pair<TimeNs, Bearing>> window;  // 50 ms
         std::optional<Eigen::Isometry3d> world_from_station;
         std::optional<Eigen::Isometry3d> last_solution;
-        std::vector<Eigen::Isometry3d> candidates;       // of world_from_station
+        std::vector<Eigen::Isometry3d> candidates;  // of world_from_station
         TimeNs next_search = 0;
         int rejected_in_a_row = 0;
     };

@@ -10,12 +10,12 @@ namespace {
 
 // Lengths of pulses in ticks. A flash has 3000 + 500 code, weaker sensors see it shorter; a sweep is over a sensor for 30 to 1200.
 constexpr unsigned shortest_flash = 2400, longest_flash = 6700, longest_sweep = 2000;
-constexpr std::int32_t same_flash = 500;                 // how much later weak sensors see it begin
+constexpr std::int32_t same_flash = 500;  // how much later weak sensors see it begin
 constexpr std::size_t flash_sensors = 3;
-constexpr std::int32_t disorder = 240'000;               // 5 ms; at most 4.2 ms in recordings
-constexpr std::int32_t pair_near = 18'000, pair_far = 21'500;   // from station 0's flash to station 1's; 19 000..20 000 in recordings
+constexpr std::int32_t disorder = 240'000;                     // 5 ms; at most 4.2 ms in recordings
+constexpr std::int32_t pair_near = 18'000, pair_far = 21'500;  // from station 0's flash to station 1's; 19 000..20 000 in recordings
 constexpr std::int32_t phase_slack = 3'000;
-constexpr std::int32_t forget_pair = 48'000'000;         // a second
+constexpr std::int32_t forget_pair = 48'000'000;  // a second
 constexpr std::int32_t sweep_begin = 40'000, sweep_end = 360'000;
 constexpr std::size_t longest_payload = 64, station_payload = 33;
 
@@ -53,7 +53,7 @@ std::optional<StationInfo> parse_station(std::span<const std::uint8_t> p) {
     }
     s.up = {i8(20), i8(21), i8(22)};
     const double length = std::hypot(s.up[0], s.up[1], s.up[2]);
-    if (length < 60) return std::nullopt;   // 127 is 1 g
+    if (length < 60) return std::nullopt;  // 127 is 1 g
     for (double& u : s.up) u /= length;
     s.mode = p[31];
     s.faults = p[32];
@@ -76,7 +76,7 @@ void OotxDecoder::begin_frame() {
 
 // 17 zeros and a one begin a frame; then words of 16 bits, high bit first, each followed by a one.
 std::optional<std::vector<std::uint8_t>> OotxDecoder::add(bool bit) {
-    if (bit && zeros_ >= 17) {   // also inside a frame: no frame has 17 zeros in a row
+    if (bit && zeros_ >= 17) {  // also inside a frame: no frame has 17 zeros in a row
         if (in_frame_) ++damaged_;
         zeros_ = 0;
         begin_frame();
@@ -153,7 +153,7 @@ void SweepDecoder::process(const Pulse& pulse) {
     if (since < sweep_begin || since > sweep_end) return;
     hits_.push_back({sweep_->station, sweep_->axis, pulse.sensor, ticks * std::numbers::pi / subframe_ticks - std::numbers::pi / 2,
                      pulse.ticks + pulse.duration / 2u});
-    if (hits_.size() > 10'000) hits_.erase(hits_.begin(), hits_.begin() + 5'000);   // nobody takes them
+    if (hits_.size() > 10'000) hits_.erase(hits_.begin(), hits_.begin() + 5'000);  // nobody takes them
 }
 
 // The best-lit sensors see the flash's true length; the upper quartile is sure to be one of them and no outlier.

@@ -13,7 +13,7 @@
 
 namespace entoptic::drivers::lighthouse {
 
-constexpr double subframe_ticks = 400'000;   // of 48 MHz: a flash and a sweep, 8.33 ms
+constexpr double subframe_ticks = 400'000;  // of 48 MHz: a flash and a sweep, 8.33 ms
 
 // A pulse of light on a sensor.
 struct Pulse {
@@ -24,8 +24,8 @@ struct Pulse {
 
 // A sweep of a station over a sensor.
 struct Hit {
-    int station = 0;   // 0 the one that flashes first, 1 the other
-    int axis = 0;      // 0 the sweep that tells left from right, 1 up from down
+    int station = 0;  // 0 the one that flashes first, 1 the other
+    int axis = 0;     // 0 the sweep that tells left from right, 1 up from down
     std::uint8_t sensor = 0;
     double angle = 0;  // rad, of the rotor from the middle of its sweep; the axis' reading before calibration
     std::uint32_t ticks = 0;
@@ -35,7 +35,7 @@ struct Hit {
 struct StationInfo {
     std::uint32_t id = 0;
     std::uint16_t firmware = 0;
-    std::uint8_t mode = 0;       // 0 A, 1 B, 2 C
+    std::uint8_t mode = 0;  // 0 A, 1 B, 2 C
     std::uint8_t faults = 0;
     // Of axis 0 and 1, rad but for the magnitudes' ratio.
     std::array<double, 2> phase{}, tilt{}, curve{}, gibbous_phase{}, gibbous_magnitude{};
@@ -49,8 +49,8 @@ class OotxDecoder {
 public:
     // The frame's payload, when this bit completed one whose check sum is right.
     std::optional<std::vector<std::uint8_t>> add(bool bit);
-    void reset();   // a bit was missed
-    std::uint64_t damaged() const { return damaged_; }   // frames with a wrong check sum or form
+    void reset();                                       // a bit was missed
+    std::uint64_t damaged() const { return damaged_; }  // frames with a wrong check sum or form
 
 private:
     void begin_frame();
@@ -73,7 +73,7 @@ public:
     // The newest description of a station (0 or 1).
     const std::optional<StationInfo>& station(int index) const { return stations_[static_cast<std::size_t>(index)].info; }
     std::uint64_t flashes() const { return flashes_; }
-    std::uint64_t unpaired() const { return unpaired_; }   // flashes that belong to no station that was seen before
+    std::uint64_t unpaired() const { return unpaired_; }  // flashes that belong to no station that was seen before
 
 private:
     struct Station {
@@ -90,13 +90,13 @@ private:
     void flash(std::uint32_t start, unsigned code);
     int station_of(std::uint32_t start);
 
-    std::deque<Pulse> waiting_;      // by time
-    std::vector<Pulse> cluster_;     // one flash as several sensors see it
+    std::deque<Pulse> waiting_;   // by time
+    std::vector<Pulse> cluster_;  // one flash as several sensors see it
     std::array<Station, 2> stations_;
-    std::optional<std::uint32_t> pair_start_, last_flash_;   // of station 0; of any
+    std::optional<std::uint32_t> pair_start_, last_flash_;  // of station 0; of any
     std::uint32_t pair_distance_ = 0;
     std::optional<Sweep> sweep_;
-    bool two_sweep_ = false;         // both stations say that they sweep: neither can be believed
+    bool two_sweep_ = false;  // both stations say that they sweep: neither can be believed
     std::vector<Hit> hits_;
     std::uint64_t flashes_ = 0, unpaired_ = 0;
 };

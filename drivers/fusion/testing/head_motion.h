@@ -13,10 +13,10 @@ namespace entoptic::drivers::testing {
 
 // Sums of sines, so that every derivative exists; zero speed at time 0 when `ease` (s) is above 0.
 struct HeadMotion {
-    double yaw = 0, pitch = 0, roll = 0;              // amplitudes, rad
+    double yaw = 0, pitch = 0, roll = 0;  // amplitudes, rad
     double yaw_hz = 0.5, pitch_hz = 0.37, roll_hz = 0.23;
-    double pitch_offset = 0;                          // rad
-    double sway_m = 0, sway_hz = 0.3;                 // of the position, each axis at its own frequency
+    double pitch_offset = 0;           // rad
+    double sway_m = 0, sway_hz = 0.3;  // of the position, each axis at its own frequency
     double ease = 1;
 
     double amount(double t) const { return ease <= 0 ? 1 : t <= 0 ? 0 : t >= ease ? 1 : t * t * (3 - 2 * t / ease) / (ease * ease); }
@@ -52,12 +52,14 @@ struct SensorErrors {
     std::uint64_t seed = 1;
 };
 
-inline InertialSample inertial_sample(const HeadMotion& motion, const SensorErrors& errors, double t, const Eigen::Vector3d& sensor, TimeNs start = ns_per_s) {
+inline InertialSample inertial_sample(const HeadMotion& motion, const SensorErrors& errors, double t, const Eigen::Vector3d& sensor,
+                                      TimeNs start = ns_per_s) {
     const auto noise = [&](std::uint64_t k) { return normal(errors.seed, static_cast<std::uint64_t>(t * 1e6) * 8 + k); };
     InertialSample s;
     s.time = start + nanoseconds(t);
     s.rate = motion.rate(t) + errors.rate_bias + errors.rate_sd * Eigen::Vector3d(noise(0), noise(1), noise(2));
-    s.acceleration = motion.felt(t, sensor) + errors.acceleration_bias + errors.acceleration_sd * Eigen::Vector3d(noise(3), noise(4), noise(5));
+    s.acceleration =
+        motion.felt(t, sensor) + errors.acceleration_bias + errors.acceleration_sd * Eigen::Vector3d(noise(3), noise(4), noise(5));
     return s;
 }
 

@@ -29,8 +29,8 @@ inline std::vector<bool> ootx_bits(const std::vector<std::uint8_t>& payload) {
 
 struct RoomStation {
     Eigen::Isometry3d world_from_station = Eigen::Isometry3d::Identity();
-    StationInfo model;                 // what its light really does
-    std::vector<bool> bits{false};     // slow channel, repeated
+    StationInfo model;              // what its light really does
+    std::vector<bool> bits{false};  // slow channel, repeated
 };
 
 // Looks from `at` to `target`; its own z points backward.
@@ -43,12 +43,12 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& at, const Eigen::Vector3
 }
 
 struct Room {
-    std::vector<RoomStation> stations;    // one or two
-    std::vector<Sensor> sensors;          // head coordinates
-    double angle_noise = 5e-5;            // rad, 1 sigma
+    std::vector<RoomStation> stations;  // one or two
+    std::vector<Sensor> sensors;        // head coordinates
+    double angle_noise = 5e-5;          // rad, 1 sigma
     std::uint64_t seed = 1;
-    std::function<Eigen::Isometry3d(double)> world_from_head;   // at a time, s
-    std::vector<bool> hidden = std::vector<bool>(32, false);    // sensors that see nothing
+    std::function<Eigen::Isometry3d(double)> world_from_head;  // at a time, s
+    std::vector<bool> hidden = std::vector<bool>(32, false);   // sensors that see nothing
 
     // Every pulse of sub-frame k, which begins at k / 120 s. In order of time.
     std::vector<Pulse> subframe(std::int64_t k) const {
@@ -64,7 +64,7 @@ struct Room {
             const double length = 3000 + 500 * axis + (data ? 1000 : 0) + (s == sweeping ? 0 : 2000);
             for (std::size_t i = 0; i < sensors.size(); ++i) {
                 if (!sees(i, stations[s], start)) continue;
-                const double weak = 60 * noise01(k, i, s);   // a weak sensor notices late and lets go early
+                const double weak = 60 * noise01(k, i, s);  // a weak sensor notices late and lets go early
                 out.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint16_t>(length - weak), wrap(start + weak / 2)});
             }
         }
@@ -75,22 +75,26 @@ struct Room {
 
 private:
     static std::uint32_t wrap(double ticks) { return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::llround(ticks))); }
-    double noise01(std::int64_t k, std::size_t i, std::size_t s) const { return uniform01(seed, static_cast<std::uint64_t>(k) * 128 + i * 2 + s); }
+    double noise01(std::int64_t k, std::size_t i, std::size_t s) const {
+        return uniform01(seed, static_cast<std::uint64_t>(k) * 128 + i * 2 + s);
+    }
     Eigen::Vector3d in_station(std::size_t i, const RoomStation& station, double ticks) const {
         return station.world_from_station.inverse() * (world_from_head(ticks / 48e6) * sensors[i].position);
     }
     bool sees(std::size_t i, const RoomStation& station, double ticks) const {
         const Eigen::Vector3d p = in_station(i, station, ticks);
-        const Eigen::Vector3d normal = station.world_from_station.linear().transpose() * (world_from_head(ticks / 48e6).linear() * sensors[i].normal);
+        const Eigen::Vector3d normal =
+            station.world_from_station.linear().transpose() * (world_from_head(ticks / 48e6).linear() * sensors[i].normal);
         return !hidden[i] && p.z() < 0 && normal.dot(p.normalized()) < -0.2;
     }
     void add_sweep(std::vector<Pulse>& out, std::int64_t k, std::size_t i, std::size_t sweeping, int axis) const {
         const RoomStation& station = stations[sweeping];
         const double start = static_cast<double>(k) * subframe_ticks + static_cast<double>(sweeping) * 19'500;
         double ticks = start + 200'000;
-        for (int pass = 0; pass < 3; ++pass) {   // where the sensor is when the sweep comes by
+        for (int pass = 0; pass < 3; ++pass) {  // where the sensor is when the sweep comes by
             const Eigen::Vector3d p = in_station(i, station, ticks);
-            ticks = start + (sweep_reading(axis, p.x(), p.y(), p.z(), station.model) + std::numbers::pi / 2) * subframe_ticks / std::numbers::pi;
+            ticks = start +
+                    (sweep_reading(axis, p.x(), p.y(), p.z(), station.model) + std::numbers::pi / 2) * subframe_ticks / std::numbers::pi;
         }
         if (!sees(i, station, ticks)) return;
         ticks += angle_noise * normal(seed + 1, static_cast<std::uint64_t>(k) * 64 + i) * subframe_ticks / std::numbers::pi;
