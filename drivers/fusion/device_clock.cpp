@@ -47,7 +47,7 @@ TimeNs DeviceClock::sample(std::uint32_t ticks, TimeNs arrival) {
     const double lateness = since_first - line_ns(ticks_);
     late_ = lateness > late_ns ? late_ + 1 : 0;
     if (lateness < -early_ns || late_ > late_samples) {
-        ++jumps_;
+        if (anchors_.size() > 1) ++jumps_;   // younger, it was a burst of old samples at the start
         restart(ticks, arrival);
     } else {
         const double excess = since_first - nominal_ns(ticks_);

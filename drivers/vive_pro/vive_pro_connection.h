@@ -1,7 +1,7 @@
 // Finding a headset of the Vive family among the HID devices, and the conversation with which it begins. No threads, no clock.
 #pragma once
 
-#include "drivers/hid/hid_device.h"
+#include "drivers/hid/hid_bus.h"
 #include "drivers/vive_pro/vive_pro_calibration.h"
 
 #include <memory>

@@ -17,6 +17,7 @@ namespace vive_pro {
 namespace {
 
 constexpr int read_timeout_ms = 100;
+constexpr int kept_by_kernel = 64;                      // HIDRAW_BUFFER_SIZE
 constexpr DurationNs frozen_after = 500'000'000;   // 500 samples are missing
 constexpr DurationNs reopen_after = 3 * ns_per_s;  // a device that froze is opened anew
 constexpr DurationNs look_again_every = 500'000'000;
@@ -83,12 +84,10 @@ void Device::run_connection() {
     read(connection_.mainboard, Source::mainboard);
     while (reading_ && wait(100'000'000)) {
         const TimeNs silent = clock_.now() - std::max(begun, tracker_.statistics().newest_sample);
-        if (silent > frozen_after) lost("it sends no motion samples any more");
-        if (silent > reopen_after) reading_ = false;
-        if (silent < frozen_after) {
-            const std::lock_guard lock(mutex_);
-            present_ = true;
-        }
+        if (silent > frozen_after)
+            lost("it sends no motion samples any more", silent > reopen_after);
+        else
+            found();
     }
     reading_ = false;
     for (std::thread& reader : readers) reader.join();
@@ -96,12 +95,14 @@ void Device::run_connection() {
 
 void Device::read_loop(HidDevice& device, Source source) {
     std::array<std::uint8_t, 64> report{};
+    // The kernel keeps the last 64 reports from when it was opened: old, and with a gap after them.
+    for (int i = 0; i < kept_by_kernel; ++i)
+        if (const auto old = device.read(report, 0); !old || *old == 0) break;
     while (reading_) {
         const auto got = device.read(report, read_timeout_ms);
         const TimeNs arrival = clock_.now();
         if (!got) {
-            lost(got.error().message);
-            reading_ = false;
+            lost(got.error().message, true);
             return;
         }
         if (*got == 0) continue;
@@ -133,8 +134,14 @@ bool Device::reconnect() {
     return false;
 }
 
-void Device::lost(const std::string& why) {
+void Device::found() {
     const std::lock_guard lock(mutex_);
+    if (reading_) present_ = true;   // else a reader has just said that it is gone
+}
+
+void Device::lost(const std::string& why, bool close) {
+    const std::lock_guard lock(mutex_);
+    if (close) reading_ = false;
     if (present_) log::warn("The headset {} is absent: {}", calibration_.serial, why);
     present_ = false;
     why_ = why;

@@ -47,7 +47,8 @@ private:
     void run_connection();
     bool reconnect();
     void read_loop(HidDevice& device, Source source);
-    void lost(const std::string& why);
+    void found();
+    void lost(const std::string& why, bool close);
     bool wait(DurationNs duration);  // false: stop
 
     HidBus& bus_;

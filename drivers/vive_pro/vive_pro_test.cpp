@@ -330,6 +330,7 @@ public:
     FakeHid(ViveModel& model, int function, std::atomic<bool>& plugged) : model_(model), function_(function), plugged_(plugged) {}
     Result<std::size_t> read(std::span<std::uint8_t> report, int timeout_ms) override {
         if (!plugged_) return failure("unplugged");
+        if (timeout_ms == 0) return std::size_t(0);
         if (function_ != 0) std::this_thread::sleep_for(std::chrono::milliseconds(std::min(timeout_ms, 5)));
         if (function_ == 1) return std::size_t(0);
         if (function_ == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));

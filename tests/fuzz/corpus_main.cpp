@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: %s FOLDER [MUTATIONS]\n", argv[0]);
         return 2;
     }
-    const std::uint64_t mutations = argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 500;
+    const std::uint64_t mutations = argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 5000;
     std::uint64_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
         std::ifstream file(entry.path(), std::ios::binary);

@@ -1,5 +1,5 @@
 // For tests: a Vive Pro as its USB functions show it. Answers feature reports, makes input reports from a known motion in a known room, and
-// fails to order. It is the device's side of vive_pro.md, written from there and not from the driver.
+// fails to order. It is the device's side of drivers/vive_pro/vive_pro.md, written from there and not from the driver.
 #pragma once
 
 #include "drivers/fusion/testing/head_motion.h"

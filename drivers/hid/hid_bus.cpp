@@ -1,4 +1,4 @@
-#include "drivers/hid/hid_device.h"
+#include "drivers/hid/hid_bus.h"
 
 #include <algorithm>
 #include <cerrno>
