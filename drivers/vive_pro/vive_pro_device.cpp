@@ -156,11 +156,15 @@ HeadsetStatus Device::status() const {
         if (!present_) out.why = why_;
     }
     if (reading.time != 0 && out.present) {
-        out.worn = reading.worn;
         out.system_button = reading.system_button;
         if (reading.ipd_mm > 0) out.ipd_mm = reading.ipd_mm;
     }
     return out;
+}
+
+bool Device::user_present() {
+    const MainboardReading reading = tracker_.mainboard();
+    return reading.time != 0 && reading.worn && status().present;
 }
 
 double Device::ipd_mm(DurationNs patience) const {
@@ -227,6 +231,7 @@ Headset headset_of(const std::shared_ptr<Device>& device, double ipd_mm) {
     headset.head = &device->tracker();
     headset.eye_tracker = &open->eyes;
     headset.status = device.get();
+    headset.presence = device.get();
     headset.owner = open;
     return headset;
 }

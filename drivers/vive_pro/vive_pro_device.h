@@ -24,7 +24,7 @@ enum class Source : std::uint8_t { imu = 0, light = 1, mainboard = 2 };
 // Sees every report before it is decoded, from the threads that read. Must not block.
 using ReportTap = std::function<void(Source, Bytes, TimeNs arrival)>;
 
-class Device final : public StatusSource {
+class Device final : public StatusSource, public PresenceSource {
 public:
     // Takes over an open connection. `bus` and `clock` live longer.
     Device(HidBus& bus, Clock& clock, Connection connection, ReportTap tap = {});
@@ -37,6 +37,7 @@ public:
     const ImuRanges& ranges() const { return ranges_; }
     const std::string& configuration() const { return configuration_; }
     HeadsetStatus status() const override;
+    bool user_present() override;  // by the proximity sensor; false while the headset is absent
     std::uint64_t reconnections() const { return reconnections_; }
 
     // Lens distance as the mainboard says within `patience`, else the configuration's, mm.

@@ -446,7 +446,9 @@ TEST(Device, TracksSaysHowItIsWornAndSurvivesBeingUnplugged) {
         EXPECT_TRUE(within(5, [&] { return headset.head->pose_at(clock.now()).orientation_tracked; }));
         EXPECT_FALSE(headset.head->pose_at(clock.now()).position_tracked);
         EXPECT_FALSE(headset.eye_tracker->present());
-        EXPECT_TRUE(within(5, [&] { return headset.status->status().worn == false; }));
+        EXPECT_FALSE(headset.presence->user_present());
+        model.proximity = 400;
+        EXPECT_TRUE(within(5, [&] { return headset.presence->user_present(); }));
         EXPECT_TRUE(model.display_on);
         EXPECT_TRUE(model.light_is_on);
 

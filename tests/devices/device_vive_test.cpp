@@ -85,9 +85,9 @@ TEST(ViveOnTheKernel, IsFoundSwitchedOnAndReadWithoutALostSample) {
         const PoseState pose = device->tracker().pose_at(the_clock.now());
         EXPECT_TRUE(pose.orientation_tracked);
         EXPECT_TRUE(pose.position_tracked);
-        EXPECT_EQ(device->status().worn, false);
+        EXPECT_FALSE(device->user_present());
         vive.model.proximity = 400;
-        EXPECT_TRUE(within(1, [&] { return device->status().worn == true; }));
+        EXPECT_TRUE(within(1, [&] { return device->user_present(); }));
         device.reset();
         EXPECT_FALSE(vive.model.display_on);
     }
