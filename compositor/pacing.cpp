@@ -7,6 +7,8 @@ namespace {
 
 constexpr std::size_t remembered = 8;
 constexpr DurationNs margin = 1'000'000;          // for waking up and for what estimates do not know
+// choice, refreshes: an application that fills the period it is told would make a slow pace slower without end.
+constexpr std::int64_t longest_told_period = 4;
 constexpr std::int64_t prediction_was_wrong = 2;  // refreshes: a frame promised later than this is not held back
 
 std::int64_t median(const std::deque<std::int64_t>& values) {
@@ -51,7 +53,7 @@ FramePacing::Prediction FramePacing::predict(TimeNs now) {
     p.start_time = grid_.deadline(p.refresh) - lead() - application_.value() - margin;
     steps_.push_back(last_promised_ < 0 ? 1 : p.refresh - last_promised_);
     if (steps_.size() > remembered) steps_.pop_front();
-    p.period = grid_.period * median(steps_);
+    p.period = grid_.period * std::clamp<std::int64_t>(median(steps_), 1, longest_told_period);
     last_promised_ = p.refresh;
     return p;
 }

@@ -186,6 +186,18 @@ TEST(Pacing, NobodyRunsAheadByMoreThanAFrame) {
     EXPECT_LE(s.log.counts().submitted, s.log.counts().displayed + 2);
 }
 
+// What xrWaitFrame says of the time between frames is the pace that the application is kept to, in whole refreshes, at most four.
+TEST(Pacing, TellsThePeriodOfThePace) {
+    for (const auto& [every, told] : {std::pair(11 * ms, 11 * ms), {22 * ms, 22 * ms}, {33 * ms, 33 * ms}, {110 * ms, 44 * ms}}) {
+        FramePacing pacing(grid);
+        FramePacing::Prediction prediction;
+        for (TimeNs now = 0; now < 20 * every; now += every) prediction = pacing.predict(now);
+        EXPECT_EQ(prediction.period, told) << every;
+        prediction = pacing.predict(20 * every + 1000 * ms);
+        EXPECT_EQ(prediction.period, told) << "one long pause does not change it";
+    }
+}
+
 TEST(PresentationLog, AFrameReplacedBeforeItWasShown) {
     PresentationLog log;
     for (std::uint64_t id : {1, 2, 3}) log.predicted(id, TimeNs(id) * 11 * ms), log.submitted(id, TimeNs(id) * ms);
