@@ -63,25 +63,28 @@ TEST(Events, OldestAreLostAndCounted) {
     EXPECT_EQ(queue.poll(event), XR_EVENT_UNAVAILABLE);
 }
 
+// Of an application of version 1.0 without extensions.
+constexpr Features plain = 0;
+
 TEST(InteractionProfiles, LegalPathsOnly) {
     const Profile* touch = find_profile("/interaction_profiles/oculus/touch_controller");
     ASSERT_NE(touch, nullptr);
-    EXPECT_NE(touch->find(UserPath::left_hand, "/input/x/click", ComponentKind::boolean), nullptr);
-    EXPECT_EQ(touch->find(UserPath::right_hand, "/input/x/click", ComponentKind::boolean), nullptr);
-    EXPECT_EQ(touch->find(UserPath::left_hand, "/input/nothing/click", ComponentKind::boolean), nullptr);
-    EXPECT_EQ(touch->find(UserPath::left_hand, "/input", ComponentKind::boolean), nullptr);
-    EXPECT_EQ(touch->find(UserPath::left_hand, "", ComponentKind::boolean), nullptr);
+    EXPECT_NE(touch->find(UserPath::left_hand, "/input/x/click", ComponentKind::boolean, plain), nullptr);
+    EXPECT_EQ(touch->find(UserPath::right_hand, "/input/x/click", ComponentKind::boolean, plain), nullptr);
+    EXPECT_EQ(touch->find(UserPath::left_hand, "/input/nothing/click", ComponentKind::boolean, plain), nullptr);
+    EXPECT_EQ(touch->find(UserPath::left_hand, "/input", ComponentKind::boolean, plain), nullptr);
+    EXPECT_EQ(touch->find(UserPath::left_hand, "", ComponentKind::boolean, plain), nullptr);
     EXPECT_EQ(find_profile("/interaction_profiles/none"), nullptr);
 }
 
 TEST(InteractionProfiles, AnIdentifierAloneMeansTheComponentThatSuits) {
     const Profile* index = find_profile("/interaction_profiles/valve/index_controller");
     ASSERT_NE(index, nullptr);
-    EXPECT_EQ(index->find(UserPath::left_hand, "/input/trigger", ComponentKind::boolean)->path, "/input/trigger/click");
-    EXPECT_EQ(index->find(UserPath::left_hand, "/input/trigger", ComponentKind::scalar)->path, "/input/trigger/value");
-    EXPECT_EQ(index->find(UserPath::left_hand, "/input/thumbstick", ComponentKind::vector2)->path, "/input/thumbstick");
-    EXPECT_EQ(index->find(UserPath::left_hand, "/input/thumbstick", ComponentKind::boolean)->path, "/input/thumbstick/click");
-    EXPECT_EQ(index->find(UserPath::left_hand, "/input/grip", ComponentKind::pose)->path, "/input/grip/pose");
+    EXPECT_EQ(index->find(UserPath::left_hand, "/input/trigger", ComponentKind::boolean, plain)->path, "/input/trigger/click");
+    EXPECT_EQ(index->find(UserPath::left_hand, "/input/trigger", ComponentKind::scalar, plain)->path, "/input/trigger/value");
+    EXPECT_EQ(index->find(UserPath::left_hand, "/input/thumbstick", ComponentKind::vector2, plain)->path, "/input/thumbstick");
+    EXPECT_EQ(index->find(UserPath::left_hand, "/input/thumbstick", ComponentKind::boolean, plain)->path, "/input/thumbstick/click");
+    EXPECT_EQ(index->find(UserPath::left_hand, "/input/grip", ComponentKind::pose, plain)->path, "/input/grip/pose");
 }
 
 TEST(InteractionProfiles, NamesForPeople) {
