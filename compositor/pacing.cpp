@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t remembered = 8;
 constexpr DurationNs margin = 1'000'000;          // for waking up and for what estimates do not know
 // choice, refreshes: an application that fills the period it is told would make a slow pace slower without end.
-constexpr std::int64_t longest_told_period = 4;
+constexpr std::int64_t longest_told_period = 16;
 constexpr std::int64_t prediction_was_wrong = 2;  // refreshes: a frame promised later than this is not held back
 
 std::int64_t median(const std::deque<std::int64_t>& values) {

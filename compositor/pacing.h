@@ -60,7 +60,7 @@ public:
         std::int64_t refresh = 0;
         TimeNs display_time = 0;  // middle of its light
         TimeNs start_time = 0;    // when the application should start, at the earliest
-        DurationNs period = 0;    // between frames at the present pace: one to four periods of the display, the median of the last promises
+        DurationNs period = 0;    // between frames at the present pace: one to sixteen periods of the display, the median of the last promises
     };
     Prediction predict(TimeNs now);
     void application_took(DurationNs duration) { application_.add(duration); }
