@@ -12,6 +12,7 @@ namespace entoptic {
 const uint geometry_lens = 0;         // the panel's own pixel grid, seen through the green lens: the density the optics give
 const uint geometry_rectilinear = 1;  // a flat picture, as a camera makes it
 const uint geometry_equirect = 2;     // longitude and latitude, -z in the middle
+const uint geometry_foveated = 3;     // a disc about the gaze, which is -z: as many samples as the retina has (perception/foveation)
 
 // Distortion of one colour; the formula is in interfaces/headset.h and in lens_gain() of shaders/geometry.glsl.
 struct LensChannel {
@@ -29,10 +30,14 @@ struct EyeGeometry {
     vec3 r2_cutoff;         // of each colour: nothing is shown where its r² exceeds it
     vec2 focal, principal_point;   // of the undistorted view, normalised device coordinates per tangent
     LensChannel channels[3];       // red, green, blue
+    // Foveated:
+    float foveal_ppd;       // pixels per degree within 5.79 degrees of the gaze
+    float edge_deg;         // eccentricity at which the disc ends
+    uint fitted;            // 1: directions by Liu's fitted inverse, equation 3; 0: by the exact one
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(EyeGeometry) == 120, "scalar layout: the GLSL side must agree");
+static_assert(sizeof(EyeGeometry) == 132, "scalar layout: the GLSL side must agree");
 }  // namespace entoptic
 #endif
 

@@ -4,8 +4,13 @@
 #define ENTOPTIC_SHADERS_GEOMETRY_GLSL
 
 #include "shaders/eye_geometry.h"
+#include "shaders/visual_polar_math.glsl"
 
 ENTOPTIC_MATH_BEGIN(geometry)
+
+#ifdef __cplusplus
+using namespace entoptic::visual_polar;
+#endif
 
 // Denominator of Valve's DISTORT_DPOLY3 (facts/devices.md 1.4). Positive inside the lens.
 FN real lens_denominator(LensChannel c, real r2) {
@@ -80,9 +85,35 @@ FN bool lens_shows(EyeGeometry g, int colour, rvec2 px) {
 
 FN rvec3 direction_of_tangents(rvec2 t) { return normalize(rvec3(t.x, t.y, LIT(-1.0))); }
 
+// The foveated disc. Its radius is the root of the number of samples within an eccentricity: every pixel holds as many samples of the
+// retina as every other, which is Liu's visual-polar map with its rectangle of radius and angle laid out as the disc that it is. In the
+// fovea a pixel is 1/foveal_ppd degrees, both ways.
+FN real foveated_radius_px(EyeGeometry g, real deg) { return real(g.foveal_ppd) * sqrt(polar_samples(deg) * LIT(0.3183098861837907)); }
+
+FN real foveated_eccentricity_deg(EyeGeometry g, real radius_px) {
+    real in_fovea = radius_px / real(g.foveal_ppd);
+    real samples = LIT(3.141592653589793) * in_fovea * in_fovea;
+    return min(g.fitted == 1u ? polar_eccentricity_fitted(samples) : polar_eccentricity(samples), LIT(180.0));
+}
+
+FN rvec3 foveated_direction(EyeGeometry g, rvec2 px) {
+    rvec2 from_middle = px - rvec2(real(g.width), real(g.height)) * LIT(0.5);
+    real radius = length(from_middle);
+    real angle = foveated_eccentricity_deg(g, radius) * LIT(0.017453292519943295);
+    rvec2 across = from_middle * (sin(angle) / max(radius, LIT(1e-6)));
+    return rvec3(across.x, -across.y, -cos(angle));
+}
+
+FN rvec2 foveated_pixel(EyeGeometry g, rvec3 direction) {
+    real off_axis = length(rvec2(direction.x, direction.y));
+    real radius = foveated_radius_px(g, atan(off_axis, -direction.z) * LIT(57.29577951308232));
+    return rvec2(real(g.width), real(g.height)) * LIT(0.5) + rvec2(direction.x, -direction.y) * (radius / max(off_axis, LIT(1e-12)));
+}
+
 // Unit direction that pixel `px` of the eye image shows.
 FN rvec3 geometry_direction(EyeGeometry g, rvec2 px) {
     if (g.kind == geometry_lens) return direction_of_tangents(lens_tangents(g, g.channels[1], px));
+    if (g.kind == geometry_foveated) return foveated_direction(g, px);
     rvec2 uv = px / rvec2(real(g.width), real(g.height));
     if (g.kind == geometry_rectilinear)
         return direction_of_tangents(rvec2(mix(real(g.tan_left), real(g.tan_right), uv.x), mix(real(g.tan_up), real(g.tan_down), uv.y)));
@@ -93,6 +124,7 @@ FN rvec3 geometry_direction(EyeGeometry g, rvec2 px) {
 
 // Pixel of the eye image that shows `direction` (need not be a unit vector). Lens and rectilinear: directions behind the eye give (-1e6, -1e6).
 FN rvec2 geometry_pixel(EyeGeometry g, rvec3 direction) {
+    if (g.kind == geometry_foveated) return foveated_pixel(g, direction);
     rvec2 size = rvec2(real(g.width), real(g.height));
     if (g.kind == geometry_equirect) {
         rvec3 d = normalize(direction);
@@ -105,8 +137,12 @@ FN rvec2 geometry_pixel(EyeGeometry g, rvec3 direction) {
            size;
 }
 
-// Whether pixel `px` shows anything at all.
-FN bool geometry_visible(EyeGeometry g, rvec2 px) { return g.kind != geometry_lens || lens_visible(g, px); }
+// Whether pixel `px` shows anything at all. Of the foveated disc: whether it can; what the view does not hold has no solid angle in the frame.
+FN bool geometry_visible(EyeGeometry g, rvec2 px) {
+    if (g.kind == geometry_foveated)
+        return length(px - rvec2(real(g.width), real(g.height)) * LIT(0.5)) <= foveated_radius_px(g, real(g.edge_deg));
+    return g.kind != geometry_lens || lens_visible(g, px);
+}
 
 // Solid angle of the pixel around `px`, sr, by central differences of one pixel.
 FN real geometry_solid_angle(EyeGeometry g, rvec2 px) {

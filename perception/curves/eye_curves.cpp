@@ -3,7 +3,7 @@
 #include "perception/curves/curve_settings.h"
 #include "perception/curves/curve_table.h"
 #include "perception/dof/dof_math.glsl"
-#include "perception/foveation/polar_map_math.glsl"
+#include "perception/foveation/visual_polar_math.glsl"
 #include "perception/pupil/watson_yellott_math.glsl"
 
 #include "perception/curves/foveation_eccentricity_exact.comp.h"
@@ -21,8 +21,8 @@ double pupil_diameter(const CurveInput& in, double x) {
     return std::clamp(watson_yellott::diameter_mm(x * in.own[1] * one_eye, in.own[0]), 1.5, 9.0);
 }
 double defocus(const CurveInput&, double x) { return dof::chromatic_dioptre(1e-3 * x); }
-double exact_deg(const CurveInput& in, double x) { return polar_map::exact_eccentricity_deg(x, in.own[0]); }
-double fitted_deg(const CurveInput& in, double x) { return polar_map::fitted_eccentricity_deg(x, in.own[0]); }
+double exact_deg(const CurveInput& in, double x) { return visual_polar::eccentricity_of_radial(x, in.own[0]); }
+double fitted_deg(const CurveInput& in, double x) { return visual_polar::fitted_eccentricity_of_radial(x, in.own[0]); }
 
 }  // namespace
 
