@@ -42,7 +42,8 @@ void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs displ
     for (std::size_t eye = 0; eye < eye_count; ++eye) {
         const EyeState& state = frame.observer.eyes[eye];
         frame.head_from_eye[eye] = headset.eyes[eye].head_from_eye;
-        input.eyes[eye] = {frame.head_from_eye[eye].inverse().rotate(state.gaze_direction), state.pupil_diameter_mm, state.eyelid_open};
+        input.eyes[eye] = {frame.head_from_eye[eye].inverse().rotate(state.gaze_direction), state.pupil_diameter_mm, state.eyelid_open,
+                           state.gaze_provenance == Provenance::measured};
     }
     input.vergence_dioptre = vergence_dioptre(frame.observer, frame.head_from_eye);
 }

@@ -572,6 +572,38 @@ TEST(Frame, OrdinaryAgainAfterALamp) {
     EXPECT_EQ(on.path->panel_picture(0).data, off.path->panel_picture(0).data);
 }
 
+// Around the gaze a foveated frame has the codes of a full one; an eye whose gaze is not known gets the full frame, to the bit.
+TEST(Frame, FoveatedFramesKeepTheFovea) {
+    Screen full({300, 333}, vive_pro_eyes()), foveated({300, 333}, vive_pro_eyes());
+    perception::Selection selection = must(perception::select("off", {"tone=key_reinhard"}));
+    must(full.path->select(selection));
+    selection.foveation.inverse = perception::FoveationInverse::exact;
+    must(foveated.path->select(selection));
+    const auto layers = [](Screen& screen) {
+        const auto noise = [](int x, int y) { return Linear{float((x * 7919 + y * 104729) % 97) / 9, float((x * 31 + y * 17) % 61) / 5, 1, 1}; };
+        return std::vector<Layer>{projection_layer(make_float_texture(test_device(), screen.pool, 400, 440, noise), screen.options.eyes)};
+    };
+    const std::vector<Layer> plain = layers(full), same = layers(foveated);
+    for (const bool known : {true, false}) {
+        FrameDescription frame = description(plain, full.options.eyes), other = description(same, foveated.options.eyes);
+        for (auto* of : {&frame, &other})
+            for (auto& eye : of->perception.eyes) eye.gaze_known = known;
+        full.compose(frame);
+        const FrameOutcome outcome = foveated.compose(other);
+        ASSERT_FALSE(outcome.effects.empty());
+        EXPECT_EQ(outcome.effects.back().slot, "foveation");
+        EXPECT_EQ(outcome.effects.back().recorded, known);
+        EXPECT_EQ(full.path->panel_picture(0).data == foveated.path->panel_picture(0).data, !known);
+        const EyeGeometry g = panel_geometry(full.options.eyes[0], 300, 333);
+        const glm::dvec2 at = geometry::geometry_pixel(g, {0, 0, -1});
+        int wrong = 0;
+        for (int y = int(at.y) - 8; y <= int(at.y) + 8; ++y)
+            for (int x = int(at.x) - 8; x <= int(at.x) + 8; ++x)
+                for (int c = 0; c < 3; ++c) wrong += full.path->panel_picture(0).at(x, y, c) != foveated.path->panel_picture(0).at(x, y, c);
+        EXPECT_EQ(wrong, 0);
+    }
+}
+
 // What the eye adapts to is the same whether 16 points of a tile are looked at or all.
 TEST(Frame, AGlanceIsAsGoodAsALook) {
     Screen glance({360, 400}, vive_pro_eyes(), true), look({360, 400}, vive_pro_eyes(), false);
@@ -599,6 +631,8 @@ TEST(Frame, PredictTurnsTheGazeIntoEyeAxes) {
             Observer observer;
             observer.time = time;
             observer.eyes[0].gaze_direction = glm::normalize(glm::vec3(0.3f, 0, -1));
+            observer.eyes[0].gaze_provenance = Provenance::measured;
+            observer.eyes[1].gaze_provenance = Provenance::modelled;
             observer.eyes[1].pupil_diameter_mm = 3;
             return observer;
         }
@@ -619,6 +653,8 @@ TEST(Frame, PredictTurnsTheGazeIntoEyeAxes) {
     const glm::vec3 back = headset.eyes[0].head_from_eye.rotate(frame.perception.eyes[0].gaze_direction);
     EXPECT_NEAR(back.x, 0.3 / std::sqrt(1.09), 1e-6);
     EXPECT_EQ(frame.perception.eyes[1].pupil_diameter_mm, 3.0f);
+    EXPECT_TRUE(frame.perception.eyes[0].gaze_known);
+    EXPECT_FALSE(frame.perception.eyes[1].gaze_known);
     predict(frame, headset, 5, 17 + ns_per_s, 17);
     EXPECT_FALSE(frame.perception.snap);
     EXPECT_NEAR(frame.perception.dt_s, 1, 1e-9);

@@ -51,6 +51,7 @@ struct EyeInput {
     vec3 gaze_direction{0, 0, -1};   // unit, in the axes of the eye image's geometry
     float pupil_diameter_mm = 4;
     float eyelid_open = 1;           // 0 closed .. 1 open
+    bool gaze_known = true;          // false: gaze_direction stands in for one that nobody has measured
 };
 
 // What changes from frame to frame.
@@ -95,6 +96,8 @@ struct ModelContext {
     DisplayRange display;
     std::uint64_t seed = 1;
     bool repeatable = true;              // work of other threads is waited for, so that two runs give the same bits; false: no frame waits
+    // Where `views` are foveated (geometry_foveated): the views that they are images of; else empty.
+    std::vector<EyeGeometry> full_views = {};
 };
 
 // A model on the GPU.
@@ -110,6 +113,11 @@ public:
     // True when these parameters leave every picture alone whose light is within the display's range (FrameInput::within_display), once the
     // model's states are at rest: its gate then says that it did not run. Adaptation, which never touches the picture, always does.
     virtual bool obeys_residual_law() const { return false; }
+    // Why the model cannot work on a foveated image, as the end of a sentence; empty when it can.
+    virtual std::string needs_full_image() const { return {}; }
+    // `from` is the same model with the same parameters on another image of the same views: goes on from its states, by copies recorded in
+    // `commands`. Models without states of their own (StageIo::state and gates are the stage's) have nothing to do.
+    virtual void take_over(gpu::Commands&, Model& /*from*/) {}
     // Records the model for one frame: gate, then work through indirect dispatches, so that a gated frame costs nothing.
     // Every dispatch that depends on an earlier one is preceded by io.commands.barrier(); the stage puts barriers around the model.
     // Errors switch the model off, with the reason in the report; the frame is shown without it.

@@ -69,6 +69,24 @@ Result<bool> set_file(ModelOfSlot& chosen, std::string_view slot, std::string_vi
     return false;
 }
 
+Result<void> set_foveation(FoveationSettings& foveation, std::string_view name, std::string_view value) {
+    if (name == "inverse") {
+        for (const FoveationInverse inverse : {FoveationInverse::off, FoveationInverse::exact, FoveationInverse::fitted})
+            if (value == name_of(inverse)) {
+                foveation.inverse = inverse;
+                return {};
+            }
+        return usage_error(fmt::format("--set foveation.inverse={}: off, exact or fitted.", value));
+    }
+    if (name != "reduction") return usage_error(fmt::format("Foveation has no parameter '{}'. Parameters: inverse, reduction.", name));
+    float reduction = 0;
+    const auto parsed = std::from_chars(value.data(), value.data() + value.size(), reduction);
+    if (parsed.ec != std::errc() || parsed.ptr != value.data() + value.size() || !(reduction >= least_foveation_reduction && reduction <= most_foveation_reduction))
+        return usage_error(fmt::format("--set foveation.reduction={}: a number from {} to {}.", value, least_foveation_reduction, most_foveation_reduction));
+    foveation.reduction = reduction;
+    return {};
+}
+
 }  // namespace
 
 const Choice* Selection::find(std::string_view slot) const {
@@ -92,11 +110,16 @@ Result<Selection> select(std::string_view preset, const std::vector<std::string>
         if (equals == std::string::npos) return usage_error(fmt::format("--model {}: write SLOT=NAME.", text));
         ENTOPTIC_CHECK(choose(chosen, std::string_view(text).substr(0, equals), std::string_view(text).substr(equals + 1)));
     }
+    FoveationSettings foveation;
     for (const std::string& text : settings) {
         const auto equals = text.find('='), dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals)
             return usage_error(fmt::format("--set {}: write SLOT.PARAMETER=VALUE.", text));
         const std::string_view slot = std::string_view(text).substr(0, dot), name = std::string_view(text).substr(dot + 1, equals - dot - 1);
+        if (slot == "foveation") {
+            ENTOPTIC_CHECK(set_foveation(foveation, name, std::string_view(text).substr(equals + 1)));
+            continue;
+        }
         ENTOPTIC_TRY(is_file, set_file(chosen, slot, name, text.substr(equals + 1)));
         if (is_file) continue;
         double value = 0;
@@ -106,7 +129,7 @@ Result<Selection> select(std::string_view preset, const std::vector<std::string>
             return usage_error(fmt::format("--set {}: '{}' is not a number.", text, text.substr(equals + 1)));
         ENTOPTIC_CHECK(set_parameter(chosen, slot, name, value));
     }
-    Selection selection{std::string(preset), {}};
+    Selection selection{std::string(preset), {}, foveation};
     for (const ModelEntry* entry : models())
         if (const auto found = chosen.find(entry->slot); found != chosen.end() && found->second.entry == entry) selection.choices.push_back(found->second);
     return selection;

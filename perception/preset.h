@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/result.h"
+#include "perception/foveation/foveation_settings.h"
 #include "perception/model.h"
 
 #include <string>
@@ -20,6 +21,7 @@ struct Choice {
 struct Selection {
     std::string preset;
     std::vector<Choice> choices;
+    FoveationSettings foveation = {};   // off in every preset
     const Choice* find(std::string_view slot) const;
 };
 
@@ -36,6 +38,7 @@ std::span<const Preset> presets();
 inline constexpr std::string_view default_preset = "combined";
 
 // `models` holds "slot=model" (model may be "none"), `settings` "slot.parameter=value" or "slot.file=path"; later ones win.
+// "foveation.inverse=off|exact|fitted" and "foveation.reduction=1..4" say how large an image the models work on.
 // Errors (usage) name the choices there are: unknown preset, slot, model, parameter; value not a number or out of range; a file that the
 // model cannot read.
 Result<Selection> select(std::string_view preset, const std::vector<std::string>& models = {}, const std::vector<std::string>& settings = {});

@@ -1,6 +1,7 @@
 #include "perception/stage.h"
 
 #include "base/log.h"
+#include "perception/foveation/foveation.h"
 #include "perception/gate.h"
 #include "perception/observer_state.h"
 
@@ -57,6 +58,7 @@ Result<void> Stage::allocate(const StageOptions& options) {
     context_.display = options.display;
     context_.seed = options.seed;
     context_.repeatable = options.repeatable;
+    context_.full_views = options.full_views;
     const auto buffer = [&](gpu::Buffer& into, std::size_t bytes, gpu::BufferKind kind, const char* name) -> Result<void> {
         ENTOPTIC_TRY(made, gpu::Buffer::create(device_, bytes, kind, name));
         into = std::move(made);
@@ -127,6 +129,25 @@ Result<Stage::Slot> Stage::make_slot(const Choice& choice) {
 }
 
 Result<void> Stage::select(const Selection& selection) {
+    ENTOPTIC_CHECK(select_models(selection));
+    return select_foveation();
+}
+
+// One stage cannot hold pictures of two sizes: the foveated image has a stage of its own.
+Result<void> Stage::select_foveation() {
+    if (selection_.foveation.inverse == FoveationInverse::off || (foveation_ && foveation_->settings() != selection_.foveation)) {
+        if (foveation_) log::info("Foveation changes: the states of the eyes start anew.");
+        foveation_.reset();
+        foveated_ = false;
+    }
+    if (selection_.foveation.inverse == FoveationInverse::off) return {};
+    if (foveation_) return foveation_->select(selection_);
+    ENTOPTIC_TRY(made, Foveation::create(device_, {context_.views, context_.display, selection_, context_.seed, context_.repeatable}));
+    foveation_ = std::move(made);
+    return {};
+}
+
+Result<void> Stage::select_models(const Selection& selection) {
     const auto kept_slot = [&](const Choice& choice) {
         return std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.model && s.choice.entry == choice.entry; });
     };
@@ -268,34 +289,86 @@ FrameInput Stage::adjusted(const FrameInput& input) {
 void Stage::record(gpu::Commands& commands, const FrameInput& measured) {
     assert(measured.eyes.size() == views_);
     input_ = adjusted(measured);
-    const FrameInput& input = input_;
     commands.begin_stage("statistics");
-    commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
+    record_tiles(commands);
     commands.barrier();
     record_view_statistics(commands);
     commands.end_stage();
-    const auto is = [](std::string_view name) { return [name](const Slot& slot) { return slot.choice.entry->slot == name; }; };
-    const auto adaptation_end = std::find_if_not(slots_.begin(), slots_.end(), [&](const Slot& slot) { return is("pupil")(slot) || is("adaptation")(slot); });
-    // Where the light on the retina is observed: before the lid, of which the observers know themselves; else where scene light ends, or,
-    // without a tone model, before the first model that acts on what it observed.
-    const auto tone = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) {
-        return is("eyelid")(slot) || is("tone")(slot) || dynamic_cast<ObservesRetina*>(slot.model.get());
-    });
-    for (Slot& slot : slots_) slot.recorded = slot.resting = false;
-    for (auto slot = slots_.begin(); slot != adaptation_end; ++slot) record_part(*slot, "", &Model::record, commands, input);
-    for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
-    for (auto slot = adaptation_end; slot != tone; ++slot) record_part(*slot, "", &Model::record, commands, input);
-    for (Slot& slot : slots_) record_part(slot, ".observe", &ObservesRetina::observe, commands, input);
-    for (auto slot = tone; slot != slots_.end(); ++slot) record_part(*slot, "", &Model::record, commands, input);
+    const bool was_foveated = foveated_;
+    not_foveated_ = foveation_ ? foveation_->refusal(input_) : std::string();
+    foveated_ = foveation_ && not_foveated_.empty();
+    record_adaptation(commands, input_);
+    if (foveated_) {
+        foveation_->record(commands, *this, input_, !was_foveated);
+    } else {
+        if (was_foveated) take_over(commands, foveation_->stage());
+        record_pictures(commands, input_);
+    }
     record_readbacks(commands);
 }
+
+void Stage::record_tiles(gpu::Commands& commands) {
+    commands.dispatch(tiles_kernel_, {scene_, solid_angle_, tiles_}, SizePush{width_, height_}, {gpu::groups_for(tiles_x() * tiles_y(), 64), 1, views_});
+}
+
+const std::vector<Stage::Slot>& Stage::models_of_picture() const { return foveated_ ? foveation_->stage().slots_ : slots_; }
+
+// Both stages have the same slots: they were given the same selection.
+void Stage::take_over(gpu::Commands& commands, Stage& from) {
+    commands.barrier();
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (!changes_picture(slots_[i])) continue;
+        commands.copy(from.slots_[i].gate, slots_[i].gate, sizeof(Gate));
+        if (slots_[i].model && from.slots_[i].model) slots_[i].model->take_over(commands, *from.slots_[i].model);
+    }
+    commands.barrier();
+}
+
+std::string Stage::refusal_of_models() const {
+    for (const Slot& slot : slots_) {
+        if (!slot.model || !slot.failed.empty() || slot.model->is_identity()) continue;
+        if (const std::string why = slot.model->needs_full_image(); !why.empty()) return fmt::format("{} {}", slot.choice.entry->name, why);
+    }
+    return {};
+}
+
+std::vector<const gpu::Buffer*> Stage::gates_of_pictures() const {
+    std::vector<const gpu::Buffer*> gates;
+    for (const Slot& slot : slots_)
+        if (slot.recorded && changes_picture(slot)) gates.push_back(&slot.gate);
+    return gates;
+}
+
+void Stage::record_adaptation(gpu::Commands& commands, const FrameInput& input) {
+    for (Slot& slot : slots_) slot.recorded = slot.resting = false;
+    for (Slot& slot : slots_)
+        if (!changes_picture(slot)) record_part(slot, "", &Model::record, commands, input);
+    for (Slot& slot : slots_) record_part(slot, ".plan", &PlansTone::plan, commands, input);
+}
+
+void Stage::record_pictures(gpu::Commands& commands, const FrameInput& input) {
+    const auto begin = std::find_if(slots_.begin(), slots_.end(), &Stage::changes_picture);
+    // Where the light on the retina is observed: before the lid, of which the observers know themselves; else where scene light ends, or,
+    // without a tone model, before the first model that acts on what it observed.
+    const auto tone = std::find_if(begin, slots_.end(), [](const Slot& slot) {
+        const std::string_view name = slot.choice.entry->slot;
+        return name == "eyelid" || name == "tone" || dynamic_cast<ObservesRetina*>(slot.model.get());
+    });
+    for (auto slot = begin; slot != slots_.end(); ++slot) slot->recorded = slot->resting = false;
+    for (auto slot = begin; slot != tone; ++slot) record_part(*slot, "", &Model::record, commands, input);
+    for (Slot& slot : slots_) record_part(slot, ".observe", &ObservesRetina::observe, commands, input);
+    for (auto slot = tone; slot != slots_.end(); ++slot) record_part(*slot, "", &Model::record, commands, input);
+}
+
+// Pupils and adaptation are states of the eyes; the other models change the picture by them. In pipeline order the former come first.
+bool Stage::changes_picture(const Slot& slot) { return slot.choice.entry->slot != "pupil" && slot.choice.entry->slot != "adaptation"; }
 
 bool Stage::obeys_residual_law() const {
     return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return !s.model || !s.failed.empty() || s.model->is_identity() || s.model->obeys_residual_law(); });
 }
 
 bool Stage::at_rest() const {
-    return std::all_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.gate_readback.as<Gate>()[0].ran == 0; });
+    return std::ranges::all_of(models_of_picture(), [](const Slot& s) { return s.gate_readback.as<Gate>()[0].ran == 0; });
 }
 
 void Stage::record_at_rest(gpu::Commands& commands, const FrameInput& input) {
@@ -304,10 +377,13 @@ void Stage::record_at_rest(gpu::Commands& commands, const FrameInput& input) {
     input_.within_display = input_.glanced = true;
     const FrameInput& inside = input_;
     commands.begin_stage("statistics");
+    if (foveated_) take_over(commands, foveation_->stage());
+    foveated_ = false;
+    not_foveated_ = "nothing is simulated in this frame";
     record_view_statistics(commands);
     commands.end_stage();
     for (Slot& slot : slots_) {
-        const bool adapts = slot.choice.entry->slot == "adaptation" || slot.choice.entry->slot == "pupil";
+        const bool adapts = !changes_picture(slot);
         slot.recorded = false;
         slot.resting = !adapts && slot.model && slot.failed.empty() && !slot.model->is_identity();
         if (adapts) record_part(slot, "", &Model::record, commands, inside);
@@ -321,9 +397,14 @@ void Stage::record_view_statistics(gpu::Commands& commands) {
     commands.barrier();
 }
 
-void Stage::record_readbacks(gpu::Commands& commands) {
+void Stage::record_gate_readbacks(gpu::Commands& commands) {
     for (Slot& slot : slots_)
         if (slot.recorded) commands.copy(slot.gate, slot.gate_readback, sizeof(Gate));
+}
+
+void Stage::record_readbacks(gpu::Commands& commands) {
+    record_gate_readbacks(commands);
+    if (foveated_) foveation_->stage().record_gate_readbacks(commands);
     commands.copy(statistics_, statistics_readback_, statistics_.size());
     commands.copy(state_, state_readback_, state_.size());
     commands.barrier();
@@ -350,20 +431,31 @@ ImageF Stage::downloaded(std::uint32_t view) const {
 
 std::vector<EffectOutcome> Stage::effects() const {
     std::vector<EffectOutcome> outcomes;
-    for (const Slot& slot : slots_) {
-        const Gate& gate = slot.gate_readback.as<Gate>()[0];
-        EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded || slot.resting, false, slot.failed, {}, 0};
-        // A model that has no gate never sets a counter: it always runs.
-        outcome.gated = slot.resting || (slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0);
-        outcome.bound_codes = outcome.gated && !slot.resting ? gate.bound : 0;
-        if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
-        else if (slot.resting) outcome.why = "not needed: all light of the frame is within the display's range";
-        else if (!slot.recorded) outcome.why = "its parameters change nothing";
-        else if (outcome.gated) outcome.why = fmt::format("cannot be seen in this frame (at most {:.3g} of a code value)", gate.bound);
-        else outcome.why = "runs";
-        outcomes.push_back(std::move(outcome));
-    }
+    const std::vector<Slot>& ran = models_of_picture();
+    for (std::size_t i = 0; i < slots_.size(); ++i) outcomes.push_back(outcome_of(changes_picture(slots_[i]) ? ran[i] : slots_[i]));
+    if (foveation_) outcomes.push_back(foveation_outcome());
     return outcomes;
+}
+
+EffectOutcome Stage::foveation_outcome() const {
+    EffectOutcome outcome{"foveation", name_of(selection_.foveation.inverse), foveated_, false, {}, {}, 0};
+    const EyeGeometry& g = foveation_->geometry();
+    outcome.why = foveated_ ? fmt::format("runs: models on {}x{} texels a view", g.width, g.height) : "the full image: " + not_foveated_;
+    return outcome;
+}
+
+EffectOutcome Stage::outcome_of(const Slot& slot) {
+    const Gate& gate = slot.gate_readback.as<Gate>()[0];
+    EffectOutcome outcome{std::string(slot.choice.entry->slot), std::string(slot.choice.entry->name), slot.recorded || slot.resting, false, slot.failed, {}, 0};
+    // A model that has no gate never sets a counter: it always runs.
+    outcome.gated = slot.resting || (slot.recorded && gate.ran == 0 && gate.frames_run + gate.frames_gated > 0);
+    outcome.bound_codes = outcome.gated && !slot.resting ? gate.bound : 0;
+    if (!slot.failed.empty()) outcome.why = "switched off: " + slot.failed;
+    else if (slot.resting) outcome.why = "not needed: all light of the frame is within the display's range";
+    else if (!slot.recorded) outcome.why = "its parameters change nothing";
+    else if (outcome.gated) outcome.why = fmt::format("cannot be seen in this frame (at most {:.3g} of a code value)", gate.bound);
+    else outcome.why = "runs";
+    return outcome;
 }
 
 ViewOutcome Stage::view(std::uint32_t index) const {

@@ -11,12 +11,15 @@
 
 namespace entoptic::perception {
 
+class Foveation;
+
 struct StageOptions {
     std::vector<EyeGeometry> views;    // 1 or more, all of one size
     DisplayRange display;
     Selection selection;
     std::uint64_t seed = 1;
     bool repeatable = true;            // see ModelContext
+    std::vector<EyeGeometry> full_views = {};   // see ModelContext
 };
 
 // What one model did in one frame.
@@ -82,7 +85,7 @@ public:
 
     // The observer of the frame recorded last, as the models were told.
     const FrameInput& input() const { return input_; }
-    // Of the frame recorded last; valid after its batch was waited for.
+    // Of the frame recorded last; valid after its batch was waited for. When foveation was chosen its outcome is the last.
     std::vector<EffectOutcome> effects() const;
     ViewOutcome view(std::uint32_t index) const;
     // Frames each effect was recorded, gated, failed, since the start: for the report.
@@ -93,8 +96,11 @@ public:
     const Selection& selection() const { return selection_; }
     // Replaces models and parameters from the next frame on; state that both choices share is kept.
     Result<void> select(const Selection& selection);
+    // Whether the frame recorded last was foveated.
+    bool foveated() const { return foveated_; }
 
 private:
+    friend class Foveation;   // which runs the models of a second stage on a foveated image
     struct Slot {
         Choice choice;
         std::unique_ptr<Model> model;
@@ -105,7 +111,24 @@ private:
     // The observer as the AdjustsEyes models leave it.
     FrameInput adjusted(const FrameInput& input);
     SceneFeedback feedback(std::uint32_t view) const;
+    void record_tiles(gpu::Commands& commands);
     void record_view_statistics(gpu::Commands& commands);
+    void record_adaptation(gpu::Commands& commands, const FrameInput& input);
+    void record_pictures(gpu::Commands& commands, const FrameInput& input);
+    static bool changes_picture(const Slot& slot);
+    // Of the stage whose models changed the picture last: this one, or the foveated one.
+    const std::vector<Slot>& models_of_picture() const;
+    // The models that change the picture go on from the states of those of `from`.
+    void take_over(gpu::Commands& commands, Stage& from);
+    // Sentence on the chosen model that needs the full image; empty when none does.
+    std::string refusal_of_models() const;
+    // Gates of the models recorded last that may have changed the picture.
+    std::vector<const gpu::Buffer*> gates_of_pictures() const;
+    Result<void> select_models(const Selection& selection);
+    Result<void> select_foveation();
+    EffectOutcome foveation_outcome() const;
+    static EffectOutcome outcome_of(const Slot& slot);
+    void record_gate_readbacks(gpu::Commands& commands);
     void record_readbacks(gpu::Commands& commands);
     explicit Stage(gpu::Device& device) : device_(device) {}
     Result<void> allocate(const StageOptions& options);
@@ -118,7 +141,7 @@ private:
     template <class Part> void record_part(Slot& slot, const char* suffix, Result<void> (Part::*part)(StageIo&), gpu::Commands& commands, const FrameInput& input);
 
     gpu::Device& device_;
-    ModelContext context_{device_, {}, {}, 1, true};
+    ModelContext context_{device_, {}, {}, 1, true, {}};
     Selection selection_;
     FrameInput input_;
     std::uint32_t width_ = 0, height_ = 0, views_ = 0;
@@ -130,6 +153,9 @@ private:
     gpu::Kernel ingest_, tiles_kernel_, statistics_kernel_;
     std::vector<Slot> slots_;
     std::map<std::string, Totals> totals_;
+    std::unique_ptr<Foveation> foveation_;   // made when first chosen; its stage has the models of foveated frames
+    bool foveated_ = false;                  // the frame recorded last was
+    std::string not_foveated_;               // why not
 };
 
 }  // namespace entoptic::perception

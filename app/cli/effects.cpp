@@ -64,7 +64,9 @@ Json effects_json() {
     Json all_slots = Json::array(), all_presets = Json::array();
     for (const auto slot : slots()) all_slots.push_back(slot_json(slot));
     for (const Preset& preset : presets()) all_presets.push_back(preset_json(preset));
-    return {{"slots", all_slots}, {"presets", all_presets}};
+    const Json foveation = {{"inverse", {{"choices", {"off", "exact", "fitted"}}, {"default", "off"}}},
+                            {"reduction", {{"min", least_foveation_reduction}, {"max", most_foveation_reduction}, {"default", FoveationSettings{}.reduction}}}};
+    return {{"slots", all_slots}, {"presets", all_presets}, {"foveation", foveation}};
 }
 
 void print_parameter(std::string_view slot, const ParameterInfo& p) {
@@ -83,6 +85,10 @@ void print_table() {
             for (const ParameterInfo& p : entry->parameters) print_parameter(slot, p);
         }
     }
+    fmt::print("\nfoveation  (off in every preset): a smaller image about the gaze that the models work on\n"
+               "      {:<34} off  [off, exact, fitted]\n          its map: off, Liu 2021 inverted exactly, or by the paper's fit\n"
+               "      {:<34} {:g}  [{:g} .. {:g}]\n          linear, of the image's side\n",
+               "foveation.inverse", "foveation.reduction", FoveationSettings{}.reduction, least_foveation_reduction, most_foveation_reduction);
     fmt::print("\nPresets\n");
     for (const Preset& preset : presets())
         fmt::print("  {:<24} {}{}\n", preset.name, preset.summary, preset.name == default_preset ? " (default)" : "");

@@ -53,17 +53,18 @@ Json photometry_json(const SessionFacts& facts, const compositor::RunReport& rep
 // Every effect that was chosen, also those of which no frame ever asked.
 Json effect_totals_json(const SessionFacts& facts, const compositor::RunReport& report) {
     Json effects = Json::object();
-    for (const perception::Choice& choice : facts.selection.choices) {
-        const std::string slot(choice.entry->slot);
+    const auto add = [&](const std::string& slot, std::string_view model) {
         const auto found = report.effects.find(slot);
         const compositor::EffectReport total =
             found == report.effects.end() ? compositor::EffectReport{0, 0, 0, "no frame needed it"} : found->second;
-        effects[slot] = {{"model", choice.entry->name},
+        effects[slot] = {{"model", model},
                          {"recorded", total.recorded},
                          {"gated", total.gated},
                          {"failed", total.failed},
                          {"why", total.why}};
-    }
+    };
+    for (const perception::Choice& choice : facts.selection.choices) add(std::string(choice.entry->slot), choice.entry->name);
+    if (facts.selection.foveation.inverse != perception::FoveationInverse::off) add("foveation", name_of(facts.selection.foveation.inverse));
     return effects;
 }
 

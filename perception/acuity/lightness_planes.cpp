@@ -43,7 +43,7 @@ Density density_of(const std::vector<EyeGeometry>& views) {
 }
 
 // For every tile of all views: 1 when the tile and `radius` pixels around it lie within the picture and are visible. What a lens shows is
-// convex (an intersection of discs), so the corners decide.
+// convex (an intersection of discs), so the corners decide. What a foveated image shows changes with the gaze: none of its tiles is.
 std::vector<uint> tiles_inside(const std::vector<EyeGeometry>& views, int radius) {
     std::vector<uint> inside;
     for (const EyeGeometry& g : views)
@@ -53,7 +53,7 @@ std::vector<uint> tiles_inside(const std::vector<EyeGeometry>& views, int radius
                 const glm::dvec2 high = low + glm::dvec2(tile_width, tile_height) + (2.0 * radius - 1);
                 const auto visible = [&](double px, double py) { return geometry::geometry_visible(g, {px, py}); };
                 const bool in_picture = low.x > 0 && low.y > 0 && high.x < g.width && high.y < g.height;
-                inside.push_back(in_picture && visible(low.x, low.y) && visible(low.x, high.y) && visible(high.x, low.y) &&
+                inside.push_back(g.kind != geometry_foveated && in_picture && visible(low.x, low.y) && visible(low.x, high.y) && visible(high.x, low.y) &&
                                  visible(high.x, high.y));
             }
     return inside;

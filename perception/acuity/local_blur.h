@@ -20,6 +20,7 @@ class LocalBlurModel : public Model {
 public:
     Result<void> make(const ModelContext& context, const LocalBlurShaders& shaders);
     Result<void> record(StageIo& io) override;
+    void take_over(gpu::Commands&, Model& from) override { ticks_ = static_cast<LocalBlurModel&>(from).ticks_; }
 
 protected:
     static constexpr std::size_t parameter_count = 8;

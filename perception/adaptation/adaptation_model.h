@@ -49,6 +49,9 @@ public:
     }
     void set_parameters(std::span<const float> values) override { std::memcpy(&params_, values.data(), sizeof params_); }
     bool obeys_residual_law() const override { return true; }
+    void take_over(gpu::Commands& commands, Model& from) override {
+        if (memory_) commands.copy(static_cast<AdaptationModel&>(from).memory_, memory_, memory_.size());
+    }
     Result<void> record(StageIo& io) override {
         // No step for dt <= 0 and NaN. An infinite one would be 0 times infinity in the series.
         const float dt_s = io.input.dt_s > 0 ? static_cast<float>(std::min(io.input.dt_s, 1e6)) : 0.0f;

@@ -93,7 +93,7 @@ public:
     static Result<std::unique_ptr<Model>> create(const ModelContext& context) {
         auto model = std::make_unique<Jacobs>();
         model->device_ = &context.device;
-        model->views_ = context.views;
+        model->views_ = context.full_views.empty() ? context.views : context.full_views;
         ENTOPTIC_CHECK(model->make_kernels());
         ENTOPTIC_TRY(status, gpu::Buffer::create(context.device, sizeof(RetinaStatus), gpu::BufferKind::device, "retina status"));
         model->status_ = std::move(status);
@@ -108,6 +108,14 @@ public:
     bool is_identity() const override { return params_.strength == 0; }
     bool obeys_residual_law() const override { return params_.photographic <= 0.5f; }
 
+    // The retina's map is made for the view, whatever image of it the model works on.
+    void take_over(gpu::Commands& commands, Model& model) override {
+        const auto& from = static_cast<Jacobs&>(model);
+        if (!from.seen_ || !fit_map(commands)) return;
+        commands.copy(from.states_[from.front_], states_[front_], states_[front_].size());
+        commands.copy(from.status_, status_, status_.size());
+        fresh_ = from.fresh_;
+    }
     Result<void> observe(StageIo& io) override {
         ENTOPTIC_CHECK(fit_map(io.commands));
         const float dt_s = io.input.dt_s > 0 ? static_cast<float>(std::min(io.input.dt_s, 1e6)) : 0.0f;

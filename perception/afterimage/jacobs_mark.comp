@@ -35,7 +35,7 @@ void main() {
     if (tile >= push.tiles_x * push.tiles_y) return;
     const EyeGeometry g = geometry[push.view];
     vec2 low = vec2(1e9), high = vec2(-1e9);
-    bool bounded = g.kind != geometry_equirect;    // on a sphere's map the corners of a tile do not bound it
+    bool bounded = g.kind != geometry_equirect && g.kind != geometry_foveated;    // on a sphere's or a disc's map the corners of a tile do not bound it
     for (uint corner = 0u; corner < 4u; ++corner) {
         const vec2 px = vec2((tile % push.tiles_x + corner % 2u) * tile_width, (tile / push.tiles_x + corner / 2u) * tile_height);
         bounded = bounded && geometry_visible(g, px);

@@ -33,6 +33,7 @@ public:
     }
     void set_parameters(std::span<const float> values) override { std::memcpy(&params_, values.data(), sizeof params_); }
     bool is_identity() const override { return params_.strength == 0; }
+    void take_over(gpu::Commands& commands, Model& from) override { passes_.take_over(commands, static_cast<DofModel&>(from).passes_); }
     Result<void> record(StageIo& io) override {
         const DofSettings settings{params_.focus_dioptre, params_.use_vergence > 0.5f, params_.focus_tau_s,
                                    params_.lca > 0.5f ? coloured : dof_colours_alike, params_.roulette > 0.5f};

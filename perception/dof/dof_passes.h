@@ -24,6 +24,8 @@ public:
                                     std::span<const std::uint32_t> pixels, std::uint32_t params_bytes);
     // `params`: the model's parameter struct.
     Result<void> record(StageIo& io, const DofSettings& settings, std::span<const std::byte> params);
+    // As Model::take_over().
+    void take_over(gpu::Commands& commands, const DofPasses& from) { commands.copy(from.focus_, focus_, focus_.size()); }
 
 private:
     struct Gathering {

@@ -75,6 +75,7 @@ public:
         return {};
     }
     bool is_identity() const override { return params_.strength <= 0; }
+    std::string needs_full_image() const override { return "draws streaks a pixel wide, by the direction of their light in the view"; }
 
 private:
     // A table and its number: even and odd ones have places of their own on the GPU.

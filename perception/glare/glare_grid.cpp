@@ -12,6 +12,9 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 // Texels may be so much wider than asked for before the grid takes twice as many: a full eye of a Vive Pro has 1.09.
 constexpr double most_widened = 1.1;
+// Of a foveated image the near field must be resolved where pixels are smallest, in the fovea: 8 of these pixels are 11.2 there, within
+// max_near_px.
+constexpr double foveated_pixel_widening = 1.4;
 glm::dvec3 direction_at(const EyeGeometry& g, double x, double y) { return geometry::geometry_direction(g, {x, y}); }
 
 GlarePatch patch_towards(uint view, glm::dvec3 forward) {
@@ -55,6 +58,7 @@ void measure_pixels(const EyeGeometry& g, const std::vector<glm::dvec2>& samples
         field.pixel += std::sqrt(across * down) / static_cast<double>(samples.size());
         field.smallest_step = std::min({field.smallest_step, across, down});
     }
+    if (g.kind == geometry_foveated) field.pixel = foveated_pixel_widening * field.smallest_step;
 }
 
 ViewField field_of(const EyeGeometry& g, uint view) {

@@ -49,6 +49,7 @@ public:
     void set_parameters(std::span<const float> v) override { std::memcpy(&params_, v.data(), sizeof params_); }
     bool is_identity() const override { return params_.strength == 0; }
     bool obeys_residual_law() const override { return params_.photographic < 0.5f; }
+    void take_over(gpu::Commands&, Model& from) override { ticks_ = static_cast<RodNoise&>(from).ticks_; }
     Result<void> record(StageIo& io) override {
         if (io.input.dt_s > 0) ticks_ += io.input.dt_s / static_cast<double>(params_.integration_s);
         if (!(ticks_ < 4e9)) ticks_ = 0;  // beyond what the clock's 32 bits hold
