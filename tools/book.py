@@ -22,7 +22,7 @@ def pages_in(folder):
 def chapters():
     yield "How it is built", ["docs/architecture.md", "docs/sources.md"]
     slots = rows("perception/models.list")
-    yield "Models of perception", ["docs/luidolt2020_corrections.md"] + [f"perception/{slot}/{model}.md" for slot, model in slots]
+    yield "Models of perception", ["docs/luidolt2020_corrections.md"] + [f"perception/{slot}/{model}.md" for slot, model in slots] + ["perception/foveation/visual_polar.md"]
     yield "Devices", [f"drivers/{driver}/{driver}.md" for driver, in rows("drivers/drivers.list")]
     yield "OpenXR extensions", pages_in("docs/extensions")
     yield "Decisions", pages_in("docs/decisions")
