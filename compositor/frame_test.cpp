@@ -575,7 +575,7 @@ TEST(Frame, OrdinaryAgainAfterALamp) {
 // Around the gaze a foveated frame has the codes of a full one; an eye whose gaze is not known gets the full frame, to the bit.
 TEST(Frame, FoveatedFramesKeepTheFovea) {
     Screen full({300, 333}, vive_pro_eyes()), foveated({300, 333}, vive_pro_eyes());
-    perception::Selection selection = must(perception::select("off", {"tone=key_reinhard"}));
+    perception::Selection selection = must(perception::select("off", {"adaptation=krawczyk_exp_log", "tone=key_reinhard"}));
     must(full.path->select(selection));
     selection.foveation.inverse = perception::FoveationInverse::exact;
     must(foveated.path->select(selection));

@@ -42,6 +42,8 @@ Result<std::unique_ptr<Stage>> Stage::create(gpu::Device& device, const StageOpt
     return stage;
 }
 
+Stage::Stage(gpu::Device& device) : device_(device) {}
+
 Stage::~Stage() = default;
 
 Result<void> Stage::allocate(const StageOptions& options) {

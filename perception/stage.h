@@ -130,7 +130,7 @@ private:
     static EffectOutcome outcome_of(const Slot& slot);
     void record_gate_readbacks(gpu::Commands& commands);
     void record_readbacks(gpu::Commands& commands);
-    explicit Stage(gpu::Device& device) : device_(device) {}
+    explicit Stage(gpu::Device& device);
     Result<void> allocate(const StageOptions& options);
     Result<void> create_kernels();
     Result<void> fill_solid_angles();

@@ -35,7 +35,7 @@ void main() {
     if (tile >= push.tiles_x * push.tiles_y) return;
     const EyeGeometry g = geometry[push.view];
     vec2 low = vec2(1e9), high = vec2(-1e9);
-    bool bounded = g.kind != geometry_equirect && g.kind != geometry_foveated;    // on a sphere's or a disc's map the corners of a tile do not bound it
+    bool bounded = g.kind != geometry_equirect;    // on a sphere's map the corners of a tile do not bound it
     for (uint corner = 0u; corner < 4u; ++corner) {
         const vec2 px = vec2((tile % push.tiles_x + corner % 2u) * tile_width, (tile / push.tiles_x + corner / 2u) * tile_height);
         bounded = bounded && geometry_visible(g, px);
@@ -43,6 +43,8 @@ void main() {
         low = min(low, place);
         high = max(high, place);
     }
+    // On a foveated disc a tile's edges are curves: half as much again.
+    const vec2 curved = g.kind == geometry_foveated ? 0.25 * (high - low) : vec2(0.0);
     // Two cells more: the neighbours between which pixels interpolate, and a tile's edge that is not quite straight on the map.
-    flags[push.view * push.tiles_x * push.tiles_y + tile] = !bounded || is_seen_within(low - 2.0, high + 2.0) ? 1u : 0u;
+    flags[push.view * push.tiles_x * push.tiles_y + tile] = !bounded || is_seen_within(low - curved - 2.0, high + curved + 2.0) ? 1u : 0u;
 }

@@ -130,7 +130,7 @@ Result<void> Foveation::create_kernels() {
     ENTOPTIC_CHECK(make(place_, "foveation.places", foveation_places_comp_spv, 4, sizeof(FoveationPush)));
     ENTOPTIC_CHECK(make(reduce_, "foveation.reduce", foveation_reduce_comp_spv, 7, sizeof(FoveationPush)));
     ENTOPTIC_CHECK(make(gate_, "foveation.gate", foveation_gate_comp_spv, 2, sizeof(GatePush)));
-    return make(restore_, "foveation.restore", foveation_restore_comp_spv, 5, sizeof(FoveationPush));
+    return make(restore_, "foveation.restore", foveation_restore_comp_spv, 6, sizeof(FoveationPush));
 }
 
 Result<void> Foveation::fill_texels() {
@@ -213,7 +213,7 @@ void Foveation::record_return(gpu::Commands& commands, const Stage& full) {
         first = false;
     }
     if (first) return;
-    commands.dispatch_indirect(restore_, {full.geometry(), stage_->geometry(), views_, stage_->scene(), full.scene()}, push_, outcome_, 0);
+    commands.dispatch_indirect(restore_, {full.geometry(), stage_->geometry(), views_, stage_->scene(), full.scene(), full.solid_angle()}, push_, outcome_, 0);
 }
 
 }  // namespace entoptic::perception

@@ -15,6 +15,7 @@ layout(scalar, binding = 1) readonly buffer Foveated { EyeGeometry foveated[]; }
 layout(scalar, binding = 2) readonly buffer Views { FoveatedView gaze_axes[]; };
 layout(scalar, binding = 3) readonly buffer Scene { vec4 scene[]; };                   // foveated
 layout(scalar, binding = 4) buffer Full { vec4 full[]; };
+layout(scalar, binding = 5) readonly buffer SolidAngle { float solid_angle[]; };       // of the view
 
 layout(scalar, push_constant) uniform PushBlock { FoveationPush push; };
 
@@ -24,12 +25,6 @@ vec4 texel_at(uint view, ivec2 at) {
     return texel.w > 0.0 ? vec4(texel.rgb, 1.0) : vec4(0.0);
 }
 
-// Texels a radian away from the gaze, where they are fewer than around it.
-float texels_a_rad(EyeGeometry f, vec3 direction, vec3 back) {
-    const float deg = max(57.29577951308232 * acos(clamp(-dot(direction, back), -1.0, 1.0)), 0.1);
-    return 57.29577951308232 * polar_density(deg) * f.foveal_ppd * f.foveal_ppd / (6.283185307179586 * foveated_radius_px(f, deg));
-}
-
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     const uint view = gl_GlobalInvocationID.z;
@@ -37,13 +32,16 @@ void main() {
     const uint index = (view * push.height + pixel.y) * push.width + pixel.x;
     const vec4 before = full[index];
     if (!(before.w > 0.0)) return;
-    const EyeGeometry g = geometry[view];
     const FoveatedView axes = gaze_axes[view];
-    const vec2 px = vec2(pixel) + 0.5;
-    const vec3 d = geometry_direction(g, px);
-    const vec2 place = foveated_pixel(foveated[view], vec3(dot(d, axes.right), dot(d, axes.up), dot(d, axes.back)));
-    const float step_rad = min(length(geometry_direction(g, px + vec2(1, 0)) - d), length(geometry_direction(g, px + vec2(0, 1)) - d));
-    const float width = 1.0 / max(step_rad * texels_a_rad(foveated[view], d, axes.back), 1e-3);     // of a texel, pixels
+    const EyeGeometry f = foveated[view];
+    const vec3 in_view = geometry_direction(geometry[view], vec2(pixel) + 0.5);
+    const vec3 d = vec3(dot(in_view, axes.right), dot(in_view, axes.up), dot(in_view, axes.back));
+    // As foveated_pixel(), whose radius also tells how many texels there are away from the gaze: nowhere fewer than around it.
+    const float off_axis = max(length(d.xy), 1e-6), deg = max(atan(off_axis, -d.z) * 57.29577951308232, 1e-3);
+    const float radius = foveated_radius_px(f, deg);
+    const vec2 place = 0.5 * vec2(f.width, f.height) + vec2(d.x, -d.y) * (radius / off_axis);
+    const float texels_a_deg = polar_density(deg) * f.foveal_ppd * f.foveal_ppd / (6.283185307179586 * radius);
+    const float width = 0.017453292519943295 / max(sqrt(solid_angle[index]) * texels_a_deg, 1e-6);     // of a texel, pixels
     const float between = clamp((width - nearest_until_px) / (filtered_from_px - nearest_until_px), 0.0, 1.0);
     const vec2 position = place - 0.5, corner = floor(position);
     // A nearest texel is bilinear with its parts rounded.

@@ -373,7 +373,7 @@ TEST(Foveation, ErrorAgainstTheFullImage) {
         const char* place;
         vec3 gaze;
         double most_p99_code;
-    } places[] = {{"lamp of 3 pixels", towards(4, -3), 20}, {"wall", towards(-12, 14), 0.5}};
+    } places[] = {{"lamp of 3 pixels", towards(4, -3), 20}, {"wall", towards(-12, 14), 1}};
     StageRunner full({g}, value(select("combined"))), small({g}, value(select("combined")));
     for (const FoveationInverse inverse : {FoveationInverse::exact, FoveationInverse::fitted}) {
         check(small.stage().select(foveated(value(select("combined")), inverse)));
@@ -388,8 +388,8 @@ TEST(Foveation, ErrorAgainstTheFullImage) {
             ledger("foveation", setting, "beyond 5 deg code p99", outside.p99_code);
             ledger("foveation", setting, "beyond 5 deg deltaE ITP mean", outside.mean_itp);
             EXPECT_LT(fovea.p99_code, place.most_p99_code) << setting;
-            EXPECT_LT(fovea.mean_itp, 1.5) << setting;
-            EXPECT_LT(outside.p99_code, 40) << setting;
+            EXPECT_LT(fovea.mean_itp, 2.2) << setting;
+            EXPECT_LT(outside.p99_code, 50) << setting;
         }
     }
 }
