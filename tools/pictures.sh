@@ -63,9 +63,6 @@ picture foveal_scotoma starlight 60 $night --model scotoma=foveal_scotoma --phot
 for model in dioptric_disc liu_range; do
     picture $model day 60 $night --model dof=$model --set dof.focus_dioptre=3 --pupil 6
 done
-# Wide, with the gaze on the lamp.
-"$programs/entoptic-demo" --offscreen "$work/wide" --size 800x640 --fov 100 --light night --lamp on >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-picture foveation wide 100 $night --model glare=closed_form --pupil 6 --gaze=-20,-9 --set foveation.inverse=exact --set foveation.reduction=3
 printf 'time_s,blink\n0,0\n1,1\n' >"$work/blink.csv"
 picture blink day 60 $night --trace "$work/blink.csv" --at 1.07 --model eyelid=blink
 
