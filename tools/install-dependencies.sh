@@ -9,7 +9,7 @@ packages="
 build-essential cmake ninja-build ccache pkg-config
 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers glslang-tools libglm-dev
 libopenxr-dev libopenxr-loader1 libopenxr-utils openxr-layer-corevalidation openxr-layer-apidump
-libopenexr-dev libpng-dev libturbojpeg0-dev libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libexpected-dev
+libopenexr-dev libpng-dev libturbojpeg0-dev libusb-1.0-0-dev libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libexpected-dev
 libfftw3-dev libgtest-dev libbenchmark-dev
 libxcb1-dev xvfb xauth
 libhidapi-dev libceres-dev libeigen3-dev zlib1g-dev

@@ -1,6 +1,7 @@
 #include "drivers/pupil_labs/pupil_labs_device.h"
 
 #include "drivers/pupil_labs/pupil_labs_tracker.h"
+#include "drivers/uvc_camera/uvc_camera.h"
 
 namespace entoptic::drivers {
 
@@ -8,7 +9,9 @@ namespace {
 
 Result<std::shared_ptr<EyeSource>> open_eyes(Clock& clock) {
     if (find_eye_cameras(linux_video_system()).empty()) return missing(no_eye_cameras());
-    return std::make_shared<PupilLabsTracker>(clock, PupilLabsOptions{});
+    PupilLabsOptions options;
+    options.bypass = [&clock](const std::string& product, const CameraMode& mode) { return open_uvc_camera(product, mode, clock); };
+    return std::make_shared<PupilLabsTracker>(clock, std::move(options));
 }
 
 }  // namespace
