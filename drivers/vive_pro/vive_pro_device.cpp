@@ -141,6 +141,7 @@ void Device::found() {
 
 void Device::lost(const std::string& why, bool close) {
     const std::lock_guard lock(mutex_);
+    if (!reading_) return;  // the first reason is the true one
     if (close) reading_ = false;
     if (present_) log::warn("The headset {} is absent: {}", calibration_.serial, why);
     present_ = false;

