@@ -28,9 +28,10 @@ Result<std::vector<PersonSetting>> settings_of(const std::string& path, const to
     std::vector<PersonSetting> out;
     for (const auto& [name, node] : table) {
         if (name == "description" && node.is_string()) continue;
+        if (name == "gaze" || name == "pupil") continue;  // observer_calibration.h
         const auto* slots = node.as_table();
         if (name != "settings" || !slots)
-            return wrong(path, node, fmt::format("there is no key '{}' of this type. There are: description, [settings].", name.str()));
+            return wrong(path, node, fmt::format("there is no key '{}' of this type. There are: description, [settings], [gaze], [pupil].", name.str()));
         for (const auto& [slot, parameters] : *slots) {
             const auto* values = parameters.as_table();
             if (!values) return wrong(path, parameters, fmt::format("write '{}.PARAMETER = NUMBER'.", slot.str()));

@@ -110,6 +110,7 @@ Result<int> calibrate_display(const DisplayOptions& o) {
 void add_calibrate(CLI::App& app, Action& action) {
     CLI::App* calibrate = app.add_subcommand("calibrate", "Fit a file to this headset or this person");
     calibrate->require_subcommand(1);
+    add_eye_calibration(*calibrate, action);
     auto options = std::make_shared<DisplayOptions>();
     CLI::App* command = calibrate->add_subcommand("display", "Make a display's file of a light meter's readings, and say how well it predicts them");
     command->add_option("readings", options->readings, "TOML file: codes shown and light read (--template prints one to fill in)");

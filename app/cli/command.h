@@ -24,6 +24,7 @@ void add_status(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_eye(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
+void add_eye_calibration(CLI::App& calibrate, Action& action);  // `calibrate gaze` and `calibrate pupil`
 void add_config(CLI::App& app, Action& action);
 
 // An option that may be given again and again, one value each time: `--model a=b --model c=d`.

@@ -4,6 +4,7 @@
 #include "app/display_file.h"
 #include "app/host/eye_size.h"
 #include "app/launch.h"
+#include "app/observer_calibration.h"
 #include "app/observer_file.h"
 #include "base/log.h"
 #include "compositor/targets/headless.h"
@@ -82,6 +83,16 @@ Result<void> choose_eye_tracker(const Config& config, Clock& clock, Headset& hea
     return {};
 }
 
+// The person's calibration over whatever eye tracker there is.
+Result<void> calibrate_eye_tracker(const Config& config, Headset& headset) {
+    ENTOPTIC_TRY(calibration, read_calibration(config.observer.value));
+    if (calibration.empty()) return {};
+    const auto eyes = std::make_shared<drivers::CalibratedEyes>(*headset.eye_tracker, calibration);
+    headset.eye_tracker = eyes.get();
+    headset.owner = std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<EyeSource>>>(headset.owner, eyes);
+    return {};
+}
+
 LayerLuminance luminance_of(const Config& config, const Photometry& panel) {
     if (!config.luminance.value) return {panel.white_cd_m2 - panel.black_cd_m2, panel.black_cd_m2, LuminanceSource::default_sdr};
     const bool command_line = config.luminance.origin == "command line";
@@ -122,6 +133,7 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
     ENTOPTIC_TRY(headset, open_headset(config, clock_->now()));
     headset_ = std::move(headset);
     ENTOPTIC_CHECK(choose_eye_tracker(config, *clock_, headset_));
+    ENTOPTIC_CHECK(calibrate_eye_tracker(config, headset_));
     if (!config.display.value.empty()) {
         ENTOPTIC_TRY(file, find_display_file(config.display.value));
         ENTOPTIC_TRY(photometry, measured_photometry(file));
