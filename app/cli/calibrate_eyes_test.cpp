@@ -16,7 +16,8 @@ TEST_F(Calibrate, GazeIsBetterAfterwardsAndStaysInTheFile) {
     for (const char* side : {"left", "right"}) {
         const double before = json[side]["before_deg"], after = json[side]["after_deg"];
         EXPECT_LT(after, before) << side;
-        EXPECT_LT(after, 0.6) << side << ": noise 0.2 and drift 0.2 degrees are what is left";
+        // What is left: noise of 0.2 degrees an axis, and 0.2 of slow drift an axis both while learning and afterwards.
+        EXPECT_LT(after, 0.9) << side;
     }
     const std::string file = testing::text_of(path("config/entoptic/observers/tester.toml"));
     EXPECT_NE(file.find("a tester"), std::string::npos) << file;
