@@ -140,8 +140,8 @@ Result<void> check_against_config(const Options& o) {
             return usage_error("A real headset runs in real time. Use --clock real, or --hmd virtual.");
         if (drivers::vive_pro::find_headsets(drivers::system_hid_bus()).empty())
             return missing(
-                "No Vive Pro was found on USB. Plug in its link box and power, and switch it on; `entoptic doctor` says what else can be "
-                "wrong.");
+                "No Vive Pro was found on USB. Plug in its link box and power, and switch it on; lsusb must list "
+                "28de:2300.");
     }
     std::vector<std::string> models, settings;
     if (!o.preset) {
