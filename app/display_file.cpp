@@ -256,6 +256,8 @@ Result<MeasuredPanel> fit_panel(const std::vector<MeterReading>& readings) {
     panel.black = light_of_reading(*black);
     ENTOPTIC_TRY(light, channels_of(readings, light_of_reading(*black)));
     panel.light = light;
+    if (!panel.has_three_primaries())
+        return failure("The colours of red, green and blue at 255 are mixtures of each other: check their readings' x and y.");
     for (std::size_t c = 0; c < 3; ++c) {
         ENTOPTIC_TRY(curve, curve_of(readings, c, panel));
         panel.curve[c] = curve;

@@ -153,6 +153,15 @@ TEST(Display, ReadingsThatCannotBeAPanelAreRefused) {
     const auto falling = fit({gray(0, 0.1), gray(100, 20), gray(120, 19), gray(255, 100)});
     ASSERT_FALSE(falling);
     EXPECT_NE(falling.error().message.find("file:7"), std::string::npos);
+    const auto alone = [](std::size_t channel, glm::dvec2 xy, double light) {
+        MeterReading reading{{}, xy, light, "file:9"};
+        reading.codes[channel] = 255;
+        return reading;
+    };
+    EXPECT_TRUE(fit({gray(0, 0), alone(0, {0.64, 0.33}, 20), alone(1, {0.3, 0.6}, 70), alone(2, {0.15, 0.06}, 7)}));
+    const auto mixed = fit({gray(0, 0), alone(0, {0.64, 0.33}, 20), alone(1, {0.3, 0.6}, 70), alone(2, {0.302, 0.598}, 7)});
+    ASSERT_FALSE(mixed) << "blue is green";
+    EXPECT_NE(mixed.error().message.find("mixtures"), std::string::npos);
     EXPECT_TRUE(fit({gray(0, 0), gray(255, 100)})) << "sRGB's curve where none was read";
 }
 

@@ -340,9 +340,8 @@ Result<MeasuredPanelPass> MeasuredPanelPass::create(gpu::Device& device, const s
     ENTOPTIC_TRY(tables, gpu::Buffer::create(device, eye_count * sizeof(MeasuredPanelTable), gpu::BufferKind::upload, "measured panel"));
     for (std::size_t eye = 0; eye < eye_count; ++eye) {
         const MeasuredPanel& panel = panels[eye];
-        const glm::dmat3 light(panel.light[0], panel.light[1], panel.light[2]);
-        const glm::dmat3 shares = glm::inverse(light);
-        if (!(std::abs(glm::determinant(light)) > 0)) return failure("The measured primaries of the display are not three colours: one is a mixture of the others.");
+        if (!panel.has_three_primaries()) return failure("The measured primaries of the display are not three colours: one is a mixture of the others.");
+        const glm::dmat3 shares = glm::inverse(glm::dmat3(panel.light[0], panel.light[1], panel.light[2]));
         MeasuredPanelTable& table = tables.as<MeasuredPanelTable>()[eye];
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<std::size_t>(c);

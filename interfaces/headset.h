@@ -6,6 +6,7 @@
 #include "interfaces/sources.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -39,6 +40,13 @@ struct MeasuredPanel {
     std::array<std::array<float, 256>, 3> curve{};   // by channel and code: share of the light at code 255; 0 at 0, 1 at 255, rising
     std::array<glm::vec3, 3> light{};                // of each channel at code 255 less its black: linear BT.709, cd/m²
     glm::vec3 black{0};                              // of code 0 in all channels: linear BT.709, cd/m²
+
+    // False when one channel's colour is a mixture of the others' to within a hundredth (the volume that the three span, over that of right
+    // angles): codes would follow the meter's noise.
+    bool has_three_primaries() const {
+        const double volume = std::abs(double(glm::determinant(glm::dmat3(light[0], light[1], light[2]))));
+        return volume > 0.01 * double(glm::length(light[0])) * double(glm::length(light[1])) * double(glm::length(light[2]));
+    }
 };
 
 // Light of the panel.

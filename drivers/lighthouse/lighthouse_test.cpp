@@ -117,18 +117,8 @@ Room make_room(const std::vector<RoomStation>& stations) {
 }
 
 std::vector<RoomStation> two_stations() {
-    std::vector<RoomStation> out(2);
-    const std::string payloads[2] = {station_b, station_c};
-    const Vector3d at[2] = {{-1.5, 2.3, -2}, {1.8, 2.2, -1.6}};
-    for (std::size_t i = 0; i < 2; ++i) {
-        auto payload = from_hex(payloads[i]);
-        const Isometry3d pose = looking(at[i], {0, 1.2, 0});
-        const Vector3d up = pose.linear().transpose() * Vector3d::UnitY();
-        for (int axis = 0; axis < 3; ++axis)
-            payload[20 + static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[axis] * 127)));
-        out[i] = {pose, *parse_station(payload), ootx_bits(payload)};
-    }
-    return out;
+    const Vector3d target(0, 1.2, 0);
+    return {station_of(from_hex(station_b), {-1.5, 2.3, -2}, target), station_of(from_hex(station_c), {1.8, 2.2, -1.6}, target)};
 }
 
 TEST(SweepDecoder, FindsEveryHitOfTwoStationsAndTheirDescriptions) {

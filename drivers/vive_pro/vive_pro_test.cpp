@@ -467,27 +467,13 @@ TEST(Device, TracksSaysHowItIsWornAndSurvivesBeingUnplugged) {
 
 // ---- From reports to poses -----------------------------------------------------------------------------------------------------------
 
-lighthouse::testing::RoomStation station(const Eigen::Vector3d& at, std::uint8_t id) {
-    lighthouse::testing::RoomStation s;
-    s.world_from_station = lighthouse::testing::looking(at, {0, 1.4, 0});
-    std::vector<std::uint8_t> payload(33, 0);
-    payload[0] = 6;
-    payload[2] = id;
-    const Eigen::Vector3d up = s.world_from_station.linear().transpose() * Eigen::Vector3d::UnitY();
-    for (int i = 0; i < 3; ++i)
-        payload[20 + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[i] * 127)));
-    s.model = *lighthouse::parse_station(payload);
-    s.bits = lighthouse::testing::ootx_bits(payload);
-    return s;
-}
-
 TEST(Tracker, FollowsAHeadInARoomThroughReportsAlone) {
     ViveModel model;
     model.motion = {0.5, 0.25, 0.1};
     model.motion.sway_m = 0.1;
     model.motion.ease = 5;
     model.clock_ppm = 20;
-    model.room.stations = {station({-1.5, 2.2, -2}, 1), station({1.8, 2.1, -1.6}, 2)};
+    model.room.stations = {lighthouse::testing::perfect_station({-1.5, 2.2, -2}, 1), lighthouse::testing::perfect_station({1.8, 2.1, -1.6}, 2)};
     Tracker tracker(model.calibration(), {});
     const TimeNs start = 100 * ns_per_s;
     double worst_mm = 0, worst_degrees = 0;

@@ -45,26 +45,12 @@ std::unique_ptr<Device> open_plugged(EmulatedVive& vive) {
     return device ? std::move(*device) : nullptr;
 }
 
-lighthouse::testing::RoomStation station(const Eigen::Vector3d& at, std::uint8_t id) {
-    lighthouse::testing::RoomStation s;
-    s.world_from_station = lighthouse::testing::looking(at, {0, 1.4, 0});
-    std::vector<std::uint8_t> payload(33, 0);
-    payload[0] = 6;
-    payload[2] = id;
-    const Eigen::Vector3d up = s.world_from_station.linear().transpose() * Eigen::Vector3d::UnitY();
-    for (int i = 0; i < 3; ++i)
-        payload[20 + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[i] * 127)));
-    s.model = *lighthouse::parse_station(payload);
-    s.bits = lighthouse::testing::ootx_bits(payload);
-    return s;
-}
-
 TEST(ViveOnTheKernel, IsFoundSwitchedOnAndReadWithoutALostSample) {
     const std::size_t files = open_files(), tasks = threads();
     {
         EmulatedVive vive;
         vive.model.motion = {0.5, 0.3, 0.1};
-        vive.model.room.stations = {station({-1.5, 2.2, -2}, 1), station({1.8, 2.1, -1.6}, 2)};
+        vive.model.room.stations = {lighthouse::testing::perfect_station({-1.5, 2.2, -2}, 1), lighthouse::testing::perfect_station({1.8, 2.1, -1.6}, 2)};
         auto device = open_plugged(vive);
         ASSERT_TRUE(device);
         EXPECT_EQ(device->calibration().serial, "LHR-EXAMPLE1");

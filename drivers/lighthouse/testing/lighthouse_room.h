@@ -42,6 +42,26 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& at, const Eigen::Vector3
     return out;
 }
 
+// A station that looks from `at` to `target` and whose light is as `payload`, the slow channel's 33 bytes, says; where it feels up is written into it.
+inline RoomStation station_of(std::vector<std::uint8_t> payload, const Eigen::Vector3d& at, const Eigen::Vector3d& target) {
+    RoomStation s;
+    s.world_from_station = looking(at, target);
+    const Eigen::Vector3d up = s.world_from_station.linear().transpose() * Eigen::Vector3d::UnitY();
+    for (int axis = 0; axis < 3; ++axis)
+        payload[20 + static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(up[axis] * 127)));
+    s.model = *parse_station(payload);
+    s.bits = ootx_bits(payload);
+    return s;
+}
+
+// One of protocol 6 with perfect rotors that looks at a standing person's chest.
+inline RoomStation perfect_station(const Eigen::Vector3d& at, std::uint8_t id) {
+    std::vector<std::uint8_t> payload(33, 0);
+    payload[0] = 6;
+    payload[2] = id;
+    return station_of(std::move(payload), at, {0, 1.4, 0});
+}
+
 struct Room {
     std::vector<RoomStation> stations;  // one or two
     std::vector<Sensor> sensors;        // head coordinates
