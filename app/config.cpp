@@ -137,9 +137,9 @@ using N = const toml::node&;
 using S = const Source&;
 #define ENTOPTIC_ORIGIN(member) [](const Config& c) { return c.member.origin; }
 const Key keys[] = {
-    {"hmd", "\"virtual\" or \"vive-pro\"", "the headset", false,
+    {"hmd", "\"virtual\", \"vive-pro\" or \"replay\"", "the headset; replay: a recording, named by script", false,
      [](N n, S s, Config& c) {
-         return read_text(n, s, c.hmd, {"virtual", "vive-pro"});
+         return read_text(n, s, c.hmd, {"virtual", "vive-pro", "replay"});
      },
      [](const Config& c) { return c.hmd.value; }, ENTOPTIC_ORIGIN(hmd)},
     {"eye_tracker", "\"auto\", \"headset\" or \"pupil-labs\"",

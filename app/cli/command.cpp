@@ -73,6 +73,9 @@ int run_command_line(std::vector<std::string> arguments) {
     add_eye(app, action);
     add_calibrate(app, action);
     add_config(app, action);
+    add_record(app, action);
+    add_replay(app, action);
+    add_export(app, action);
     try {
         return parse_and_run(app, std::move(arguments), action);
     } catch (const std::exception& e) {

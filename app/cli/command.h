@@ -26,6 +26,9 @@ void add_eye(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_eye_calibration(CLI::App& calibrate, Action& action);  // `calibrate gaze` and `calibrate pupil`
 void add_config(CLI::App& app, Action& action);
+void add_record(CLI::App& app, Action& action);
+void add_replay(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 
 // An option that may be given again and again, one value each time: `--model a=b --model c=d`.
 CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help);

@@ -5,6 +5,7 @@
 #include "app/launch.h"
 #include "app/observer_file.h"
 #include "app/parse.h"
+#include "drivers/recording/recording.h"
 #include "drivers/virtual_hmd/virtual_hmd_script.h"
 #include "drivers/vive_pro/vive_pro_connection.h"
 
@@ -164,7 +165,11 @@ Result<void> check(const Options& o) {
             return usage_error(
                 fmt::format("--panel {}: write WIDTHxHEIGHT of one eye, each from 16 to 8192, such as 1440x1600.", *o.panel));
     }
-    if (o.script) ENTOPTIC_CHECK(drivers::load_script(*o.script));
+    if (o.script && o.hmd == "replay") {
+        ENTOPTIC_CHECK(drivers::RecordingReader::open(*o.script));
+    } else if (o.script) {
+        ENTOPTIC_CHECK(drivers::load_script(*o.script));
+    }
     return check_outputs(o);
 }
 
@@ -241,7 +246,7 @@ Result<int> run(const Options& options) {
 void add_run(CLI::App& app, const std::vector<std::string>& application, Action& action) {
     auto o = std::make_shared<Options>();
     CLI::App* c = app.add_subcommand("run", "Run an OpenXR application under this runtime: entoptic run [options] -- CMD...");
-    c->add_option("--hmd", o->hmd, "virtual or vive-pro")->check(CLI::IsMember({"virtual", "vive-pro"}));
+    c->add_option("--hmd", o->hmd, "virtual, vive-pro, or replay: a recording given with --script")->check(CLI::IsMember({"virtual", "vive-pro", "replay"}));
     c->add_option("--panel", o->panel, "Pixels of the virtual panel, one eye: 1440x1600");
     c->add_option("--display", o->display, "Readings of the panel: a file in displays/, or a path that ends in .toml");
     c->add_option("--eye-scale", o->eye_scale, "Size of the eye image over the panel's")->check(CLI::Range(0.1, 2.0));

@@ -73,7 +73,7 @@ Result<Headset> open_headset(const Config& config, TimeNs start_time) {
 Result<void> choose_eye_tracker(const Config& config, Clock& clock, Headset& headset) {
     const std::string& wanted = config.eye_tracker.value;
     const bool automatic = wanted == "auto";
-    if (wanted == "headset" || (automatic && config.hmd.value == "virtual")) return {};
+    if (wanted == "headset" || (automatic && (config.hmd.value == "virtual" || config.hmd.value == "replay"))) return {};
     if (config.clock.value == "lockstep")
         return usage_error("Eye cameras work in real time only. Use --clock real, or eye_tracker = \"headset\".");
     auto eyes = drivers::open_eye_tracker(wanted, clock);
@@ -140,6 +140,8 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
         headset_.display.photometry = photometry;
     }
     facts_.hmd = headset_.display.name;
+    if (config.hmd.value == "vive-pro")
+        report_error("The headset's own panel is not driven by this version: its pictures go to the window or to files (--target).");
     facts_.eye_tracker_present = headset_.eye_tracker->present();
     facts_.eye_tracker = headset_.eye_tracker->description();
     facts_.luminance = luminance_of(config, headset_.display.photometry);
