@@ -73,6 +73,8 @@ int run_command_line(std::vector<std::string> arguments) {
     add_eye(app, action);
     add_calibrate(app, action);
     add_config(app, action);
+    add_doctor(app, action);
+    add_runtime(app, action);
     add_record(app, action);
     add_replay(app, action);
     add_export(app, action);

@@ -26,6 +26,8 @@ void add_eye(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_eye_calibration(CLI::App& calibrate, Action& action);  // `calibrate gaze` and `calibrate pupil`
 void add_config(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
+void add_runtime(CLI::App& app, Action& action);
 void add_record(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
