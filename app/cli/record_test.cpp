@@ -104,7 +104,9 @@ TEST_F(RecordTest, DoctorNamesEachFindingWithWhatMendsIt) {
     for (const auto& finding : json["findings"]) {
         checks.insert(finding["check"]);
         EXPECT_FALSE(finding["what"].get<std::string>().empty());
-        if (finding["state"] == "problem") EXPECT_FALSE(finding["mend"].get<std::string>().empty()) << finding.dump();
+        if (finding["state"] == "problem") {
+            EXPECT_FALSE(finding["mend"].get<std::string>().empty()) << finding.dump();
+        }
     }
     for (const char* check : {"vulkan", "runtime", "active runtime", "loader", "configuration", "permissions", "headset", "eye camera"})
         EXPECT_TRUE(checks.count(check)) << check;
