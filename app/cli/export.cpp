@@ -1,6 +1,7 @@
 // `entoptic export`: a recording as tables that others read: BIDS eye tracking and motion, or CSV.
 #include "app/cli/command.h"
 #include "app/cli/output.h"
+#include "drivers/eye_tracking/gaze_angles.h"
 #include "drivers/replay/replay_device.h"
 
 #include <algorithm>
@@ -18,7 +19,6 @@ struct ExportOptions {
     std::string file, output, format = "bids";
 };
 
-constexpr double degrees = 180 / M_PI;
 constexpr const char* absent = "n/a";  // BIDS's word for a value that is not there
 
 // One eye sample in the units of the tables.
@@ -30,11 +30,14 @@ EyeRow row_of(const drivers::RecordedEye& eye, TimeNs start) {
     const RawEyeSample& s = eye.sample;
     EyeRow row;
     row.time_s = seconds(s.time - start);
-    const glm::vec3& g = s.gaze_direction;
+    const glm::dvec3 g(s.gaze_direction);
     row.confidence = std::isfinite(s.confidence) ? double(s.confidence) : 0;
     row.gaze = std::isfinite(g.x) && std::isfinite(g.y) && std::isfinite(g.z) && g.z < 0 && row.confidence > 0;
-    row.x_deg = std::atan2(double(g.x), -double(g.z)) * degrees;
-    row.y_deg = std::atan2(double(g.y), -double(g.z)) * degrees;
+    if (row.gaze) {
+        const drivers::GazeAngles angles = drivers::angles_of(g);
+        row.x_deg = angles.x;
+        row.y_deg = angles.y;
+    }
     row.pupil = std::isfinite(s.pupil_diameter_mm) && s.pupil_diameter_mm > 0 && row.confidence > 0;
     row.pupil_mm = double(s.pupil_diameter_mm);
     return row;
@@ -56,6 +59,7 @@ Result<void> write_text(const std::string& path, const std::string& text) {
     out << text;
     out.close();
     if (!out) return failure(fmt::format("{} cannot be written. Choose another place with -o.", path));
+    fmt::print("{}\n", path);
     return {};
 }
 Result<void> write_gzip(const std::string& path, const std::string& text) {
@@ -67,6 +71,7 @@ Result<void> write_gzip(const std::string& path, const std::string& text) {
     }
     if (file) written = gzclose(file) == Z_OK && written;
     if (!written) return failure(fmt::format("{} cannot be written. Choose another place with -o.", path));
+    fmt::print("{}\n", path);
     return {};
 }
 
@@ -88,22 +93,24 @@ Result<void> bids_eye(const drivers::RecordedSession& session, int eye, const st
     }
     if (times.empty()) return {};
     const std::string name = fmt::format("{}_recording-eye{}_physio", prefix, eye + 1);
-    const Json sidecar = {{"PhysioType", "eyetrack"},
-                          {"RecordedEye", eye == 0 ? "left" : "right"},
-                          {"SampleCoordinateSystem", "eye-in-head"},
-                          {"SamplingFrequency", sampling_hz(times)},
-                          {"StartTime", times.front()},
-                          {"Columns", {"timestamp", "x_coordinate", "y_coordinate", "pupil_size", "confidence"}},
-                          {"Manufacturer", session.hmd == "virtual" ? "Entoptic (simulated)" : "Pupil Labs"},
-                          {"SoftwareVersions", fmt::format("Entoptic {}", ENTOPTIC_VERSION)},
-                          {"timestamp",
-                           {{"Description", "When the light of the sample fell on the tracker's sensor"},
-                            {"Units", "s"},
-                            {"Origin", "first sample of the recording"}}},
-                          {"x_coordinate", column("Gaze, horizontal", "Direction of the eye in the head, positive to the right", "degree")},
-                          {"y_coordinate", column("Gaze, vertical", "Direction of the eye in the head, positive up", "degree")},
-                          {"pupil_size", column("Pupil", "Diameter of the entrance pupil", "mm")},
-                          {"confidence", column("Confidence", "Of the tracker in this sample, 0 to 1; 0: no pupil was found", "1")}};
+    const Json sidecar = {
+        {"PhysioType", "eyetrack"},
+        {"RecordedEye", eye == 0 ? "left" : "right"},
+        {"SampleCoordinateSystem", "eye-in-head"},
+        {"SamplingFrequency", sampling_hz(times)},
+        {"StartTime", times.front()},
+        {"Columns", {"timestamp", "x_coordinate", "y_coordinate", "pupil_size", "confidence"}},
+        {"Manufacturer", session.hmd == "virtual" ? "Entoptic (simulated)" : "Pupil Labs"},
+        {"SoftwareVersions", fmt::format("Entoptic {}", ENTOPTIC_VERSION)},
+        {"timestamp",
+         {{"Description", "When the light of the sample fell on the tracker's sensor"},
+          {"Units", "s"},
+          {"Origin", "first sample of the recording"}}},
+        {"x_coordinate",
+         column("Gaze, horizontal", "Azimuth of the eye's direction in the head (Fick's angles), positive to the right", "degree")},
+        {"y_coordinate", column("Gaze, vertical", "Elevation of the eye's direction in the head (Fick's angles), positive up", "degree")},
+        {"pupil_size", column("Pupil", "Diameter of the entrance pupil", "mm")},
+        {"confidence", column("Confidence", "Of the tracker in this sample, 0 to 1; 0: no pupil was found", "1")}};
     ENTOPTIC_CHECK(write_gzip(name + ".tsv.gz", rows));
     return write_text(name + ".json", sidecar.dump(2) + "\n");
 }
@@ -127,24 +134,32 @@ std::string head_row(const drivers::RecordedPose& pose, TimeNs start, char separ
 
 Result<void> bids_head(const drivers::RecordedSession& session, const std::string& prefix) {
     if (session.poses.empty()) return {};
-    std::string rows, channels = "name\tcomponent\ttype\ttracked_point\tunits\n";
+    std::string rows, channels = "name\tcomponent\ttype\ttracked_point\tunits\treference_frame\n";
     std::vector<double> times;
     for (const drivers::RecordedPose& pose : session.poses) {
         rows += head_row(pose, session.start, '\t') + '\n';
         times.push_back(seconds(pose.time - session.start));
     }
-    for (const HeadColumn& c : head_columns) channels += fmt::format("{}\t{}\t{}\thead\t{}\n", c.name, c.component, c.type, c.units);
+    for (const HeadColumn& c : head_columns) channels += fmt::format("{}\t{}\t{}\thead\t{}\tstage\n", c.name, c.component, c.type, c.units);
     const Json sidecar = {{"SamplingFrequency", sampling_hz(times)},
                           {"TrackingSystemName", session.hmd},
                           {"MotionChannelCount", 8},
                           {"POSChannelCount", 3},
                           {"ORNTChannelCount", 4},
-                          {"SpatialAxes", "RSB"},
-                          {"RotationRule", "right-hand"},
                           {"MissingValues", absent},
                           {"SoftwareVersions", fmt::format("Entoptic {}", ENTOPTIC_VERSION)}};
     ENTOPTIC_CHECK(write_text(prefix + "_tracksys-head_motion.tsv", rows));
+    // OpenXR's axes: x right, y up, z back.
+    const Json frames = {{"reference_frame",
+                          {{"Levels",
+                            {{"stage",
+                              {{"SpatialAxes", "RSP"},
+                               {"RotationRule", "right-hand"},
+                               {"Description",
+                                "The room: x to the right, y up, z backward; the floor is at y = 0. Quaternions turn the head's axes into "
+                                "the room's."}}}}}}}};
     ENTOPTIC_CHECK(write_text(prefix + "_tracksys-head_channels.tsv", channels));
+    ENTOPTIC_CHECK(write_text(prefix + "_tracksys-head_channels.json", frames.dump(2) + "\n"));
     return write_text(prefix + "_tracksys-head_motion.json", sidecar.dump(2) + "\n");
 }
 

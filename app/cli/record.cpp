@@ -86,8 +86,8 @@ Result<Session> open_vive(const RecordOptions& o, Clock& clock, const std::share
 // A millisecond after another: eye samples as they have arrived, poses at their rate.
 class Sampler {
 public:
-    Sampler(Headset& headset, RecordingWriter& writer, double rate_hz)
-        : headset_(headset), writer_(writer), pose_every_(nanoseconds(1 / rate_hz)) {}
+    Sampler(Headset& headset, RecordingWriter& writer, double rate_hz, TimeNs begin)
+        : headset_(headset), writer_(writer), pose_every_(nanoseconds(1 / rate_hz)), next_pose_(begin) {}
     void sample(TimeNs now) {
         for (int eye = 0; eye < 2; ++eye) {
             const auto raw = headset_.eye_tracker->present() ? headset_.eye_tracker->raw_at(eye, now) : std::nullopt;
@@ -95,13 +95,17 @@ public:
             if (!raw || raw->time == last) continue;
             last = raw->time;
             writer_.add(Stream::eye, now, drivers::encode_eye(eye, *raw));
+            ++eyes_;
         }
         if (now >= next_pose_) {
             writer_.add(Stream::pose, now, drivers::encode_pose(now, headset_.head->pose_at(now)));
+            ++poses_;
             next_pose_ = std::max(next_pose_ + pose_every_, now + 1);
         }
         note_status(now);
     }
+    std::uint64_t poses() const { return poses_; }
+    std::uint64_t eyes() const { return eyes_; }
 
 private:
     void note_status(TimeNs now) {
@@ -115,7 +119,8 @@ private:
     Headset& headset_;
     RecordingWriter& writer_;
     DurationNs pose_every_;
-    TimeNs next_pose_ = 0;
+    TimeNs next_pose_;
+    std::uint64_t poses_ = 0, eyes_ = 0;
     std::array<TimeNs, 2> last_eye_{};
     bool present_ = true;
 };
@@ -137,8 +142,8 @@ Result<int> record(const RecordOptions& o) {
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     Progress progress("s recorded", o.progress);
-    Sampler sampler(session->headset, *writer, o.rate_hz);
     const TimeNs begin = clock->now(), end = begin + nanoseconds(o.seconds);
+    Sampler sampler(session->headset, *writer, o.rate_hz, begin);
     for (TimeNs next = begin; next < end && !interrupted; next += 1'000'000) {
         clock->sleep_until(next);
         sampler.sample(clock->now());
@@ -147,6 +152,7 @@ Result<int> record(const RecordOptions& o) {
     tapped->store(nullptr);
     session->headset = {};  // its threads end here, before the writer does
     ENTOPTIC_CHECK(writer->close());
+    fmt::print("{}: {:.3f} s, {} poses, {} eye samples.\n", o.file, seconds(clock->now() - begin), sampler.poses(), sampler.eyes());
     return 0;
 }
 

@@ -165,7 +165,8 @@ Result<void> check(const Options& o) {
             return usage_error(
                 fmt::format("--panel {}: write WIDTHxHEIGHT of one eye, each from 16 to 8192, such as 1440x1600.", *o.panel));
     }
-    if (o.script && o.hmd == "replay") {
+    if (o.hmd == "replay") {
+        if (!o.script) return usage_error("A replay needs its recording: --script FILE (entoptic record makes one).");
         ENTOPTIC_CHECK(drivers::RecordingReader::open(*o.script));
     } else if (o.script) {
         ENTOPTIC_CHECK(drivers::load_script(*o.script));
@@ -246,7 +247,8 @@ Result<int> run(const Options& options) {
 void add_run(CLI::App& app, const std::vector<std::string>& application, Action& action) {
     auto o = std::make_shared<Options>();
     CLI::App* c = app.add_subcommand("run", "Run an OpenXR application under this runtime: entoptic run [options] -- CMD...");
-    c->add_option("--hmd", o->hmd, "virtual, vive-pro, or replay: a recording given with --script")->check(CLI::IsMember({"virtual", "vive-pro", "replay"}));
+    c->add_option("--hmd", o->hmd, "virtual, vive-pro, or replay: a recording given with --script")
+        ->check(CLI::IsMember({"virtual", "vive-pro", "replay"}));
     c->add_option("--panel", o->panel, "Pixels of the virtual panel, one eye: 1440x1600");
     c->add_option("--display", o->display, "Readings of the panel: a file in displays/, or a path that ends in .toml");
     c->add_option("--eye-scale", o->eye_scale, "Size of the eye image over the panel's")->check(CLI::Range(0.1, 2.0));

@@ -88,8 +88,8 @@ public:
         const std::lock_guard lock(hidapi_mutex);
         if (access(info.path.c_str(), R_OK | W_OK) != 0 && errno == EACCES)
             return missing(
-                fmt::format("{} may not be opened by this user. Give it access with a udev rule for vendor 28de and 0bb4 "
-                            "(KERNEL==\"hidraw*\", TAG+=\"uaccess\"), then plug the headset in again.",
+                fmt::format("{} may not be opened by this user. Install Entoptic's udev rules, then plug the headset in again; "
+                            "`entoptic doctor` says how.",
                             info.path));
         hid_device* device = hid_open_path(info.path.c_str());
         if (!device) return missing(fmt::format("{} cannot be opened: {}.", info.path, narrow(hid_error(nullptr))));

@@ -65,10 +65,9 @@ void take(Record record, RecordedSession& out) {
         if (!in_order) ++out.malformed;
     } else if (record.stream == Stream::eye) {
         const auto eye = decode_eye(record.payload);
-        const bool in_order = eye && possible(eye->sample.time) && possible(eye->sample.arrival) &&
-                              (out.eyes.empty() || eye->sample.arrival >= out.eyes.back().sample.arrival);
-        if (in_order) out.eyes.push_back(*eye);
-        if (!in_order) ++out.malformed;
+        const bool sound = eye && possible(eye->sample.time) && possible(eye->sample.arrival);
+        if (sound) out.eyes.push_back(*eye);
+        if (!sound) ++out.malformed;
     } else if (record.stream == Stream::vive_report) {
         out.reports.push_back(std::move(record));
     } else if (record.stream == Stream::event) {
@@ -80,6 +79,8 @@ Result<Headset> open(const DriverOptions& options) {
     if (options.script.empty() || options.script == DriverOptions{}.script)
         return usage_error("A replay needs its recording: --script FILE.");
     ENTOPTIC_TRY(session, load_session(options.script));
+    session.panel_width = options.panel_width;  // a virtual panel has the size that this run asks for
+    session.panel_height = options.panel_height;
     return replay_headset(std::make_shared<const RecordedSession>(std::move(session)), options.start_time);
 }
 
@@ -103,6 +104,9 @@ Result<RecordedSession> load_session(const std::string& path) {
         }
         take(std::move(*record), out);
     }
+    // The two eyes' samples are written one after the other, whichever arrived first.
+    std::stable_sort(out.eyes.begin(), out.eyes.end(),
+                     [](const RecordedEye& a, const RecordedEye& b) { return a.sample.arrival < b.sample.arrival; });
     std::stable_sort(out.reports.begin(), out.reports.end(), [](const Record& a, const Record& b) { return a.time < b.time; });
     out.lost_bytes = reader.lost_bytes();
     return out;

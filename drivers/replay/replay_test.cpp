@@ -48,9 +48,10 @@ TEST_F(ReplayTest, AVirtualSessionComesBackAsItWas) {
     options.name = "replay";
     options.script = path_;
     options.start_time = 7 * ns_per_s;
+    options.panel_width = 900;  // of this run
     const auto replay = open_headset(options);
     ASSERT_TRUE(replay) << replay.error().message;
-    EXPECT_EQ(replay->display.panel_width, 720);
+    EXPECT_EQ(replay->display.panel_width, 900);
     EXPECT_NEAR(double(replay->eyes[1].head_from_eye.position.x), 0.032, 1e-6);
     EXPECT_TRUE(replay->eye_tracker->present());
     for (TimeNs t = 0; t < 2900; t += 7) {

@@ -194,7 +194,7 @@ private:
     tl::unexpected<CameraError> broken(const char* what, int code) const {
         const CameraFault fault = fault_of(code);
         const char* advice = fault == CameraFault::forbidden
-                                 ? "Give your user access to the USB device with a udev rule (MODE=\"0660\", TAG+=\"uaccess\")."
+                                 ? "Install Entoptic's udev rules, so that you may reach it through libusb; `entoptic doctor` says how."
                              : fault == CameraFault::no_bandwidth ? "Plug one camera into another port, or take other devices off this bus."
                                                                   : "Plug it in again.";
         return tl::make_unexpected(

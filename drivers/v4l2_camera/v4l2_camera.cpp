@@ -46,7 +46,7 @@ const char* advice_for(CameraFault fault) {
         case CameraFault::gone:
             return "Plug it in again.";
         case CameraFault::forbidden:
-            return "Add yourself to the group 'video' (usermod -aG video USER) and log in again.";
+            return "Install Entoptic's udev rules (`entoptic doctor` says how), or add yourself to the group 'video' and log in again.";
         case CameraFault::busy:
             return "Close the other program that uses it.";
         case CameraFault::no_bandwidth:

@@ -183,7 +183,7 @@ Result<std::unique_ptr<Device>> open_device(HidBus& bus, Clock& clock, ReportTap
     if (found.empty())
         return missing(
             "No Vive Pro was found: no USB device 28de:2300 (or 28de:2000). Plug in the link box and its power, and switch it on; "
-            "lsusb must list it.");
+            "`entoptic doctor` checks the rest.");
     Error last{ErrorKind::missing, ""};
     for (const Functions& functions : found) {
         auto connection = connect(bus, functions);
