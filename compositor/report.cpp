@@ -58,7 +58,14 @@ bool RunStatistics::add_error(const std::string& message) {
     return true;
 }
 
+void RunStatistics::presented(TimeNs time) {
+    if (first_present_ == 0) first_present_ = time;
+    last_present_ = time;
+}
+
 void RunStatistics::write(RunReport& report) const {
+    report.first_present = first_present_;
+    report.last_present = last_present_;
     report.composed = composed_;
     report.fused = fused_;
     for (const auto& [stage, samples] : gpu_) report.gpu_ms[stage] = samples.summary();

@@ -39,6 +39,7 @@ struct RunReport {
     std::uint64_t pixels_cleaned = 0;                    // over all frames and eyes
     std::vector<AdaptationSample> adaptation;            // thinned evenly in long sessions; empty when nothing is simulated
     std::vector<std::string> errors;                     // each message once
+    TimeNs first_present = 0, last_present = 0;          // when a composed frame had gone to the target, by the stopwatch; 0 without one
 };
 
 // Collects what a RunReport says. Not thread-safe.
@@ -46,6 +47,8 @@ class RunStatistics {
 public:
     void add(const FrameDescription& frame, const FrameOutcome& outcome, TimeNs light_time);
     void add_cpu(const std::string& stage, double ms) { cpu_[stage].push(ms); }
+    // The frame that add() took has gone to the target, at this time of a stopwatch.
+    void presented(TimeNs time);
     // True when this message is new.
     bool add_error(const std::string& message);
     // Fills all that this class knows.
@@ -61,7 +64,7 @@ private:
     Samples latency_;
     std::vector<AdaptationSample> adaptation_;
     std::uint64_t adaptation_stride_ = 1, composed_ = 0, fused_ = 0, cleaned_ = 0;
-    TimeNs first_light_ = 0;
+    TimeNs first_light_ = 0, first_present_ = 0, last_present_ = 0;
     std::vector<std::string> errors_;
 };
 

@@ -327,6 +327,7 @@ void CompositorService::finish(Submitted& submitted, const FrameDescription& fra
                                TimeNs light) {
     log_.shown(submitted.frame.frame_id, refresh, light);
     statistics_.add(frame, outcome, light);
+    if (options_.path.stopwatch) statistics_.presented(options_.path.stopwatch->now());
     if (path_->stage())
         for (const auto& [slot, totals] : path_->stage()->totals())
             effects_[slot] = {totals.recorded, totals.gated, totals.failed, totals.why};

@@ -121,6 +121,7 @@ Result<std::unique_ptr<Host>> Host::create(const ApplicationIdentity& applicatio
 }
 
 Result<void> Host::start(const ApplicationIdentity& application, const Config& config) {
+    facts_.started = stopwatch_.now();
     facts_.application = application;
     facts_.config = config;
     ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value,

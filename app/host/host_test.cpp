@@ -93,6 +93,9 @@ TEST_F(HostTest, ShowsFramesAndReportsThem) {
     EXPECT_EQ(report["photometry"]["source"], "command line");
     EXPECT_EQ(report["errors"], Json({"a remark"}));
     EXPECT_FALSE(report["timing_ms"].empty());
+    EXPECT_GT(report["process"]["first_frame_s"].get<double>(), 0);
+    EXPECT_GT(report["process"]["frames_per_s"].get<double>(), 0);
+    EXPECT_GT(report["process"]["peak_memory_mib"].get<double>(), 10);
     EXPECT_EQ(failure_text(), "");
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 namespace entoptic::app {
 namespace {
@@ -93,6 +94,16 @@ Json effects_now_json(const SessionFacts& facts, const compositor::FrameOutcome&
     return effects;
 }
 
+// Of the whole process, application and runtime.
+Json process_json(const SessionFacts& facts, const compositor::RunReport& report) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    Json process = {{"peak_memory_mib", static_cast<double>(usage.ru_maxrss) / 1024}};  // ru_maxrss is in KiB on Linux
+    if (report.first_present > 0) process["first_frame_s"] = seconds(report.first_present - facts.started);
+    if (report.composed > 1) process["frames_per_s"] = static_cast<double>(report.composed - 1) / seconds(report.last_present - report.first_present);
+    return process;
+}
+
 std::string device_text(const compositor::RunReport& report) { return fmt::format("{} ({})", report.device, report.driver); }
 
 }  // namespace
@@ -115,6 +126,7 @@ Json report_json(const SessionFacts& facts, const compositor::RunReport& report,
             {"frames", frames_json(report)},
             {"timing_ms", timing_json(report)},
             {"latency_ms", distribution_json(report.latency_ms)},
+            {"process", process_json(facts, report)},
             {"effects", effect_totals_json(facts, report)},
             {"photometry", photometry_json(facts, report)},
             {"state", state_json(report)},

@@ -23,6 +23,7 @@ struct SessionFacts {
     LayerLuminance luminance;  // for layers that do not say
     perception::Selection selection;
     SettingsAnswer adjusted;  // to the last `entoptic set`
+    TimeNs started = 0;       // xrCreateInstance, CLOCK_MONOTONIC
 };
 
 // Where the luminance of the layers comes from, in words.
