@@ -26,6 +26,11 @@ std::int64_t RefreshGrid::first_at(TimeNs time) const {
     return (since + period - 1) / period;
 }
 
+std::int64_t RefreshGrid::nearest(TimeNs time) const {
+    const DurationNs since = time - start + period / 2;
+    return since >= 0 ? since / period : -((-since + period - 1) / period);
+}
+
 void DurationEstimate::add(DurationNs duration) {
     last_.push_back(duration);
     if (last_.size() > remembered) last_.pop_front();
@@ -75,11 +80,23 @@ void FramePacing::taken(std::int64_t refresh, TimeNs now, bool composing) {
     composing_since_ = now;
 }
 
-std::int64_t FramePacing::composed(TimeNs now) {
+// The refresh at `vblank` keeps its number, and so do those near it; far ones, which nobody asks for, move with the period.
+void FramePacing::follow(TimeNs vblank, DurationNs period) {
+    const std::int64_t refresh = grid_.nearest(vblank);
+    grid_.period = period;
+    grid_.start = vblank - refresh * period;
+}
+
+std::int64_t FramePacing::composed(TimeNs now, TimeNs vblank, DurationNs period) {
     composing_ = false;
     if (!first_composition_) composition_.add(now - composing_since_);
     first_composition_ = false;  // it compiled the shaders
-    last_shown_ = std::max({last_taken_, grid_.first_at(now), last_shown_ + 1});
+    if (vblank && period > 0) {
+        follow(vblank, period);
+        last_shown_ = std::max(grid_.nearest(vblank), last_shown_ + 1);
+    } else {
+        last_shown_ = std::max({last_taken_, grid_.first_at(now), last_shown_ + 1});
+    }
     last_taken_ = std::max(last_taken_, last_shown_);
     return last_shown_;
 }
@@ -108,7 +125,7 @@ void PresentationLog::shown(std::uint64_t frame_id, std::int64_t refresh, TimeNs
         if (PresentationRecord* before = find(current_->frame_id)) before->refreshes_shown += static_cast<std::uint32_t>(stood);
     }
     PresentationRecord* record = find(frame_id);
-    const bool again = current_ && current_->frame_id == frame_id;
+    const bool again = (current_ && current_->frame_id == frame_id) || (record && record->refreshes_shown > 0);
     if (again)
         ++counts_.reused;
     else

@@ -22,6 +22,8 @@ struct RefreshGrid {
 
     TimeNs deadline(std::int64_t k) const { return start + k * period; }
     TimeNs light(std::int64_t k) const { return deadline(k) + vblank_to_photon; }
+    // The refresh whose deadline is nearest to `time`; may be negative.
+    std::int64_t nearest(TimeNs time) const;
     // The first refresh whose deadline is not before `time`.
     std::int64_t first_at(TimeNs time) const;
 };
@@ -78,11 +80,14 @@ public:
     // Composition for `refresh` begins; or nothing is done for it.
     void taken(std::int64_t refresh, TimeNs now, bool composing);
     // Returns the refresh at which the picture is really shown: the planned one, or the first after `now`.
-    std::int64_t composed(TimeNs now);
+    // Where the display tells, `vblank` is when it really began to show it and `period` the time between its refreshes: the grid follows,
+    // and numbers of refreshes go on. 0: it does not tell.
+    std::int64_t composed(TimeNs now, TimeNs vblank = 0, DurationNs period = 0);
 
     const RefreshGrid& grid() const { return grid_; }
 
 private:
+    void follow(TimeNs vblank, DurationNs period);
     DurationNs lead() const;  // before a deadline that composition has to begin
 
     RefreshGrid grid_;
@@ -100,6 +105,7 @@ struct FrameCounts {
     std::uint64_t reused = 0;     // refreshes at which an older frame was composed again with a newer pose
     std::uint64_t missed = 0;     // refreshes between the first light and the last at which the picture before simply stood
     std::uint64_t discarded = 0;  // begun, never submitted
+    std::uint64_t unseen = 0;     // pictures composed while the display was away
 };
 
 class PresentationLog {
@@ -110,6 +116,11 @@ public:
     void discarded(std::uint64_t frame_id);
     // A composition of `frame_id` came to light at refresh `refresh`, its middle at `light`. In lockstep refreshes count compositions.
     void shown(std::uint64_t frame_id, std::int64_t refresh, TimeNs light);
+    // A picture was composed, and no display was there to show it: from the one before on, refreshes are not counted as missed.
+    void unseen() {
+        ++counts_.unseen;
+        current_.reset();
+    }
     // The picture is taken away (end of the session): later refreshes are not counted as missed.
     void cleared() { current_.reset(); }
 

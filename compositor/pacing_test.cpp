@@ -19,6 +19,62 @@ TEST(RefreshGrid, FirstAt) {
     EXPECT_EQ(grid.light(2), 30 * ms);
 }
 
+TEST(RefreshGrid, Nearest) {
+    EXPECT_EQ(grid.nearest(5 * ms), 0);
+    EXPECT_EQ(grid.nearest(10 * ms), 0);
+    EXPECT_EQ(grid.nearest(11 * ms), 1);
+    EXPECT_EQ(grid.nearest(-1 * ms), -1);
+    EXPECT_EQ(grid.nearest(-6 * ms), -1);
+    EXPECT_EQ(grid.nearest(-12 * ms), -2);
+}
+
+// The display's refreshes lie elsewhere than the grid's first guess, and its crystal is 100 ppm off.
+TEST(FramePacing, FollowsADisplayThatTellsItsRefreshes) {
+    const DurationNs period = 11'001'100;
+    const TimeNs phase = 9 * ms;
+    const auto vblank = [&](std::int64_t k) { return phase + k * period; };
+    FramePacing pacing(grid);
+    TimeNs now = 0;
+    std::int64_t last = -1;
+    for (int i = 0; i < 100'000; ++i) {
+        const FramePacing::Prediction p = pacing.predict(now);
+        const FramePacing::Plan plan = pacing.plan(now);
+        now = std::max(now, plan.wake_time);
+        pacing.taken(plan.refresh, now, true);
+        now += 2 * ms;
+        const std::int64_t k = (now - phase + period - 1) / period;
+        const std::int64_t shown = pacing.composed(now, vblank(k), period);
+        EXPECT_EQ(pacing.grid().deadline(shown), vblank(k));
+        if (i > 0) {
+            ASSERT_EQ(shown, last + 1);  // none is missed, none counted twice
+        }
+        if (i > 0) {  // what is promised is a refresh, to the nanosecond
+            ASSERT_EQ((p.display_time - grid.vblank_to_photon - phase) % period, 0);
+        }
+        last = shown;
+        now = vblank(k);
+    }
+}
+
+TEST(PresentationLog, PicturesOfADisplayThatIsAwayAreNotShownAndNotMissed) {
+    PresentationLog log;
+    for (std::uint64_t id = 1; id <= 3; ++id) {
+        log.predicted(id, ns_per_s);
+        log.submitted(id, ns_per_s);
+    }
+    log.shown(1, 10, ns_per_s);
+    log.unseen();
+    log.unseen();
+    log.shown(1, 20, 2 * ns_per_s);  // it is back, and shows what it showed
+    log.shown(3, 21, 3 * ns_per_s);
+    EXPECT_EQ(log.counts().displayed, 2u);
+    EXPECT_EQ(log.counts().reused, 1u);
+    EXPECT_EQ(log.counts().missed, 0u);
+    EXPECT_EQ(log.counts().unseen, 2u);
+    EXPECT_EQ(log.records(3)[1].refreshes_shown, 0u);
+    EXPECT_EQ(log.records(3)[1].display_time, 0);
+}
+
 TEST(DurationEstimate, IgnoresOneHiccupButNotAHabit) {
     DurationEstimate estimate(7);
     EXPECT_EQ(estimate.value(), 7);

@@ -220,8 +220,10 @@ void CompositorService::run_lockstep(Lock& lock) {
     FrameOutcome outcome;
     const bool done = !next.discarded && compose(next, frame = describe(next, next.promise.display_time), outcome);
     next.images.release();
+    const bool shown = done && wait_shown().shown;  // its refreshes are not this clock's
     lock.lock();
-    if (done) finish(next, frame, outcome, static_cast<std::int64_t>(frame.index), frame.display_time);
+    if (done && !shown) unseen(outcome);
+    if (shown) finish(next, frame, outcome, static_cast<std::int64_t>(frame.index), frame.display_time);
     composing_ = false;
     changed_.notify_all();
 }
@@ -256,9 +258,14 @@ void CompositorService::compose_for_refresh(Lock& lock, std::int64_t refresh) {
     FrameOutcome outcome;
     FrameDescription frame = describe(*current_, pacing_.grid().light(refresh));
     const bool done = compose(*current_, frame, outcome);
+    const TimeNs composed = clock_.now();
+    const PresentFeedback feedback = done ? wait_shown() : PresentFeedback{false, 0, 0};
     lock.lock();
-    const std::int64_t shown_at = pacing_.composed(clock_.now());
-    if (done) finish(*current_, frame, outcome, shown_at, pacing_.grid().light(shown_at));
+    const std::int64_t shown_at = pacing_.composed(composed, feedback.vblank_time, feedback.period);
+    if (feedback.shown)
+        finish(*current_, frame, outcome, shown_at, pacing_.grid().light(shown_at));
+    else if (done)
+        unseen(outcome);
     current_->shown = true;
     composing_ = false;
     changed_.notify_all();
@@ -317,10 +324,23 @@ void CompositorService::present(const FrameDescription& frame, FrameOutcome& out
     const Clock* stopwatch = options_.path.stopwatch;
     const TimeNs started = stopwatch ? stopwatch->now() : 0;
     auto shown = target_->test(state);
-    if (shown)
-        if (auto committed = target_->commit(state); !committed) shown = forward_error(std::move(committed.error()));
+    if (shown) shown = target_->commit(state);
+    presented_ = bool(shown);
     if (!shown) report_error(shown.error().message);
     if (stopwatch) outcome.cpu_ms.push_back({"present", static_cast<double>(stopwatch->now() - started) * 1e-6});
+}
+
+PresentFeedback CompositorService::wait_shown() {
+    if (!presented_) return {false, 0, 0};
+    const auto feedback = target_->wait_shown();
+    if (feedback) return *feedback;
+    report_error(feedback.error().message);
+    return {false, 0, 0};
+}
+
+void CompositorService::unseen(const FrameOutcome& outcome) {
+    log_.unseen();
+    last_outcome_ = outcome;
 }
 
 void CompositorService::finish(Submitted& submitted, const FrameDescription& frame, const FrameOutcome& outcome, std::int64_t refresh,

@@ -54,6 +54,8 @@ public:
     std::vector<PresentationRecord> presentation_records(std::size_t count) const override;
 
     RunReport report() const;
+    // Somebody could see pictures now: the display is not away.
+    bool display_lit() const { return target_->lit(); }
     // What the last composition found, for `entoptic status`.
     FrameOutcome last_outcome() const;
     // Replaces models and parameters from the next frame on.
@@ -85,7 +87,11 @@ private:
     bool compose(Submitted& submitted, FrameDescription& frame, FrameOutcome& outcome);
     void apply_selection();
     void present(const FrameDescription& frame, FrameOutcome& outcome);
+    // After compose(): waits until the picture comes to light, where the display tells. Without the lock.
+    PresentFeedback wait_shown();
     void finish(Submitted& submitted, const FrameDescription& frame, const FrameOutcome& outcome, std::int64_t refresh, TimeNs light);
+    // A picture that nobody can have seen, as the display is away.
+    void unseen(const FrameOutcome& outcome);
     void report_error(const std::string& message);
     Promise take_promise(std::uint64_t frame_id, TimeNs fallback);
 
@@ -111,6 +117,7 @@ private:
     std::map<std::uint64_t, Promise> promises_;
     std::uint64_t next_frame_id_ = 1, last_begun_ = 0, composition_index_ = 0;
     TimeNs last_promised_ = 0, last_light_ = 0;
+    bool presented_ = false;  // the last picture was handed to the display; the compositor's thread only
     bool session_ = false, ending_ = false, composing_ = false, stop_ = false;
     std::thread thread_;
 };

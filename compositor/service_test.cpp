@@ -47,7 +47,7 @@ struct Recorder final : DisplayTarget {
     };
     explicit Recorder(std::shared_ptr<Log> l) : log(std::move(l)) {}
     Result<void> test(const PresentState&) override { return {}; }
-    Result<PresentFeedback> commit(const PresentState& state) override {
+    Result<void> commit(const PresentState& state) override {
         const PanelCodes codes = state.path->panel();
         auto readback = must(gpu::Buffer::create(test_device(), codes.codes->size(), gpu::BufferKind::readback, "test"));
         auto commands = must(gpu::Commands::create(test_device(), "test"));
@@ -58,15 +58,35 @@ struct Recorder final : DisplayTarget {
         const auto words = readback.as<std::uint32_t>();
         log->pictures.emplace_back(words.begin(), words.end());
         log->frames.push_back(*state.frame);
-        return PresentFeedback{};
+        return {};
     }
     bool close_wanted() const override { return log->closed; }
     std::string description() const override { return "recorder"; }
     std::shared_ptr<Log> log;
 };
 
+// A display with refreshes of its own, at 90.9 Hz and a phase that nobody knows before; and one that is away.
+struct TellingDisplay final : DisplayTarget {
+    static constexpr DurationNs period = 11'000'000;
+    static constexpr TimeNs phase = 3'210'987;
+    explicit TellingDisplay(std::shared_ptr<std::atomic<bool>> a) : away(std::move(a)) {}
+    Result<void> test(const PresentState&) override { return {}; }
+    Result<void> commit(const PresentState&) override { return {}; }
+    Result<PresentFeedback> wait_shown() override {
+        if (*away) return PresentFeedback{false, 0, 0};
+        const TimeNs vblank = phase + ((clock.now() - phase) / period + 1) * period;
+        clock.sleep_until(vblank);
+        return PresentFeedback{true, vblank, period};
+    }
+    bool lit() const override { return !*away; }
+    std::string description() const override { return "telling"; }
+    MonotonicClock clock;
+    std::shared_ptr<std::atomic<bool>> away;
+};
+
 struct Session {
-    explicit Session(bool lockstep, std::function<void(ServiceOptions&)> change = {}, PictureSize panel = {48, 40}) {
+    explicit Session(bool lockstep, std::function<void(ServiceOptions&)> change = {}, PictureSize panel = {48, 40},
+                     std::unique_ptr<DisplayTarget> target = nullptr) {
         headset.head = &head;
         headset.eye_tracker = &eyes;
         headset.eyes = vive_pro_eyes();
@@ -81,7 +101,8 @@ struct Session {
         };
         if (change) change(options);
         Clock& clock = lockstep ? static_cast<Clock&>(virtual_clock) : monotonic;
-        service = must(CompositorService::create(test_device(), clock, headset, std::make_unique<Recorder>(log), options));
+        if (!target) target = std::make_unique<Recorder>(log);
+        service = must(CompositorService::create(test_device(), clock, headset, std::move(target), options));
         SwapchainRequest request;
         request.vk_format = VK_FORMAT_R8G8B8A8_SRGB;
         request.width = request.height = 64;
@@ -132,6 +153,41 @@ std::string folder(const char* name) {
 std::string file_bytes(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Display, FramesAreOfTheRefreshesThatTheDisplayTells) {
+    const auto away = std::make_shared<std::atomic<bool>>(false);
+    Session s(false, {}, {48, 40}, std::make_unique<TellingDisplay>(away));
+    s.service->begin_session();
+    for (int i = 0; i < 30; ++i) s.one_frame();
+    s.service->end_session();
+    int shown = 0;
+    for (const PresentationRecord& record : s.service->presentation_records(30)) {
+        if (record.display_time == 0) continue;
+        ++shown;
+        const DurationNs vblank = record.display_time - s.headset.display.vblank_to_photon;
+        EXPECT_EQ((vblank - TellingDisplay::phase) % TellingDisplay::period, 0);
+        if (shown > 4) {  // promises of the first were made before the display had told anything
+            EXPECT_EQ((record.predicted_display_time - record.display_time) % TellingDisplay::period, 0);
+        }
+    }
+    EXPECT_GT(shown, 20);
+    EXPECT_TRUE(s.service->display_lit());
+}
+
+TEST(Display, WhileItIsAwayTheSessionGoesOnAndNothingCountsAsShown) {
+    const auto away = std::make_shared<std::atomic<bool>>(true);
+    Session s(false, {}, {48, 40}, std::make_unique<TellingDisplay>(away));
+    s.service->begin_session();
+    for (int i = 0; i < 10; ++i) s.one_frame();
+    EXPECT_FALSE(s.service->display_lit());
+    EXPECT_EQ(s.service->report().frames.displayed, 0u);
+    EXPECT_GT(s.service->report().frames.unseen, 5u);
+    *away = false;
+    for (int i = 0; i < 10; ++i) s.one_frame();
+    s.service->end_session();
+    EXPECT_GT(s.service->report().frames.displayed, 5u);
+    EXPECT_EQ(s.service->report().frames.submitted, 20u);
 }
 
 TEST(Lockstep, EveryFrameIsComposedOnceAtItsPredictedTime) {

@@ -173,6 +173,8 @@ Result<void> Device::create_device(const DeviceOptions&) {
     std::vector<const char*> extensions;
     external_memory_ = contains(available, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
     if (external_memory_) extensions.push_back(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    for (const char* optional : {VK_EXT_EXTERNAL_MEMORY_DMA_BUF_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME})
+        if (external_memory_ && contains(available, optional)) extensions.push_back(optional);  // gpu/external_buffer.h
     windows_ = windows_ && contains(available, "VK_KHR_swapchain");
     if (windows_) extensions.push_back("VK_KHR_swapchain");
 

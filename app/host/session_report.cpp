@@ -36,6 +36,7 @@ Json frames_json(const compositor::RunReport& report) {
             {"reused", report.frames.reused},
             {"missed", report.frames.missed},
             {"discarded", report.frames.discarded},
+            {"unseen", report.frames.unseen},
             {"composed", report.composed},
             {"fused", report.fused}};
 }

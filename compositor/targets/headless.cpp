@@ -6,7 +6,7 @@ namespace {
 class Headless final : public DisplayTarget {
 public:
     Result<void> test(const PresentState&) override { return {}; }
-    Result<PresentFeedback> commit(const PresentState&) override { return PresentFeedback{}; }
+    Result<void> commit(const PresentState&) override { return {}; }
     std::string description() const override { return "headless"; }
 };
 

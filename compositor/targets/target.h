@@ -1,4 +1,5 @@
-// Where panel codes go: nowhere (headless), or a window. Used from the compositor's thread only, but for close_wanted().
+// Where panel codes go: nowhere (headless), a window, or a headset's panel. Used from the compositor's thread only, but for what says
+// otherwise.
 #pragma once
 
 #include "compositor/frame.h"
@@ -13,18 +14,25 @@ struct PresentState {
     FramePath* path = nullptr;  // its panel() holds the codes; compose() is not running
 };
 
+// What became of a picture.
 struct PresentFeedback {
-    TimeNs light_time = 0;  // middle of the light, where the display tells; 0: it does not
+    bool shown = true;       // false: nobody can have seen it, the display is away
+    TimeNs vblank_time = 0;  // the refresh that began to show it, CLOCK_MONOTONIC; 0: the display does not tell
+    DurationNs period = 0;   // from refresh to refresh, as measured; 0 with vblank_time
 };
 
 class DisplayTarget {
 public:
     virtual ~DisplayTarget() = default;
-    // Whether commit() could show this now. Changes nothing.
+    // Whether commit() could show this now. Changes nothing that is shown.
     virtual Result<void> test(const PresentState& state) = 0;
-    virtual Result<PresentFeedback> commit(const PresentState& state) = 0;
+    // Hands the picture over; returns before it is shown.
+    virtual Result<void> commit(const PresentState& state) = 0;
+    // After a commit() without error: waits until the picture comes to light, where the display tells. Bounded.
+    virtual Result<PresentFeedback> wait_shown() { return PresentFeedback{}; }
     virtual bool close_wanted() const { return false; }  // the user closed it; thread-safe
-    virtual std::string description() const = 0;
+    virtual bool lit() const { return true; }            // somebody could see it now; thread-safe
+    virtual std::string description() const = 0;         // thread-safe; of a display that is away: why
 };
 
 }  // namespace entoptic::compositor

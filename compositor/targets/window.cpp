@@ -54,7 +54,7 @@ public:
     Result<void> open();
 
     Result<void> test(const PresentState& state) override;
-    Result<PresentFeedback> commit(const PresentState& state) override;
+    Result<void> commit(const PresentState& state) override;
     bool close_wanted() const override { return closed_; }
     std::string description() const override { return "window"; }
 
@@ -253,8 +253,8 @@ Result<void> Window::test(const PresentState&) {
     return {};
 }
 
-Result<PresentFeedback> Window::commit(const PresentState& state) {
-    if (closed_) return PresentFeedback{};
+Result<void> Window::commit(const PresentState& state) {
+    if (closed_) return {};
     if (resized_ || !swapchain_) {
         {
             const std::lock_guard lock(device_.queue_mutex());
@@ -262,21 +262,20 @@ Result<PresentFeedback> Window::commit(const PresentState& state) {
         }
         destroy_swapchain();
         ENTOPTIC_CHECK(make_swapchain());
-        if (!swapchain_) return PresentFeedback{};
+        if (!swapchain_) return {};
     }
     std::uint32_t index = 0;
     const VkResult acquired = vkAcquireNextImageKHR(device_.handle(), swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
         resized_ = true;
-        return PresentFeedback{};
+        return {};
     }
     if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return forward_error(gpu::vulkan_error("vkAcquireNextImageKHR", acquired));
     ENTOPTIC_CHECK(commands_.begin());
     ENTOPTIC_CHECK(record(state, images_[index]));
     ENTOPTIC_CHECK(commands_.submit(acquired_, VK_PIPELINE_STAGE_TRANSFER_BIT, drawn_[index]));
     ENTOPTIC_CHECK(commands_.wait());
-    ENTOPTIC_CHECK(present(index));
-    return PresentFeedback{};
+    return present(index);
 }
 
 Result<void> Window::record(const PresentState& state, VkImage target) {
