@@ -172,9 +172,10 @@ const Key keys[] = {
      [](const Config& c) { return fmt::format("{}", c.ideal_tracker.value); }, ENTOPTIC_ORIGIN(ideal_tracker)},
     {"seed", "a whole number from 0", "seed of everything random", false, [](N n, S s, Config& c) { return read_count(n, s, c.seed, 0); },
      [](const Config& c) { return fmt::format("{}", c.seed.value); }, ENTOPTIC_ORIGIN(seed)},
-    {"target", "\"headless\" or \"window\"", "where the panel's picture goes", false,
+    {"target", "\"auto\", \"headless\", \"window\" or \"kms\"",
+     "where pictures go; kms: the headset's own panel; auto: a real headset's panel, else a window; the virtual one's nowhere", false,
      [](N n, S s, Config& c) {
-         return read_text(n, s, c.target, {"headless", "window"});
+         return read_text(n, s, c.target, {"auto", "headless", "window", "kms"});
      },
      [](const Config& c) { return c.target.value; }, ENTOPTIC_ORIGIN(target)},
     {"frames", "a whole number from 0", "displayed frames after which the session ends; 0: no limit", false,

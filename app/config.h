@@ -29,8 +29,8 @@ struct Config {
     Setting<std::string> script{"still"};
     Setting<bool> ideal_tracker{false};
     Setting<std::uint64_t> seed{1};
-    Setting<std::string> target{"headless"};  // headless | window
-    Setting<std::uint64_t> frames{0};         // displayed frames after which the session ends; 0: no limit
+    Setting<std::string> target{"auto"};  // auto | headless | window | kms
+    Setting<std::uint64_t> frames{0};     // displayed frames after which the session ends; 0: no limit
     Setting<std::string> preset;
     Setting<std::string> observer;               // a person's file in observers/; empty: the default eye
     std::vector<Setting<std::string>> models;    // "glare=none"

@@ -266,7 +266,8 @@ void add_run(CLI::App& app, const std::vector<std::string>& application, Action&
     c->add_option("--observer", o->observer, "Person whose eye is simulated: observers/NAME.toml");
     c->add_option("--luminance", o->luminance, "cd/m² of linear 1 in layers that do not say")->check(CLI::Range(1e-6, 1e6));
     c->add_option("--report", o->report, "Write the session's report as JSON");
-    c->add_option("--target", o->target, "headless or window")->check(CLI::IsMember({"headless", "window"}));
+    c->add_option("--target", o->target, "headless, window, kms: the headset's own panel, or auto: a real headset's panel, else a window")
+        ->check(CLI::IsMember({"auto", "headless", "window", "kms"}));
     c->add_option("--seed", o->seed, "Seed of everything random");
     c->add_flag("--ideal-tracker", o->ideal_tracker, "Eye tracker without noise, delay and dropouts");
     c->add_flag("--json", o->json, "Print the report on standard output at the end; the application's own goes to standard error");

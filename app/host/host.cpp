@@ -2,13 +2,12 @@
 
 #include "app/cli/output.h"
 #include "app/display_file.h"
+#include "app/host/display_target.h"
 #include "app/host/eye_size.h"
 #include "app/launch.h"
 #include "app/observer_calibration.h"
 #include "app/observer_file.h"
 #include "base/log.h"
-#include "compositor/targets/headless.h"
-#include "compositor/targets/window.h"
 #include "drivers/driver.h"
 
 #include <algorithm>
@@ -105,12 +104,6 @@ compositor::WantedPictures wanted_pictures(const std::vector<std::string>& names
     return {has("warp"), has("perceive"), has("lens"), has("panel"), has("seen")};
 }
 
-Result<std::unique_ptr<compositor::DisplayTarget>> make_target(gpu::Device& device, const SessionFacts& facts,
-                                                               compositor::PictureSize panel) {
-    if (facts.config.target.value == "headless") return compositor::make_headless_target();
-    return compositor::make_window_target(device, {panel, fmt::format("Entoptic: {}", facts.application.name), false});
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Host>> Host::create(const ApplicationIdentity& application, const Config& config) {
@@ -141,8 +134,6 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
         headset_.display.photometry = photometry;
     }
     facts_.hmd = headset_.display.name;
-    if (config.hmd.value == "vive-pro")
-        report_error("The headset's own panel is not driven by this version: its pictures go to the window or to files (--target).");
     facts_.eye_tracker_present = headset_.eye_tracker->present();
     facts_.eye_tracker = headset_.eye_tracker->description();
     facts_.luminance = luminance_of(config, headset_.display.photometry);
@@ -153,13 +144,13 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
 
 Result<void> Host::open_compositor() {
     const Config& config = facts_.config;
-    ENTOPTIC_TRY(device,
-                 gpu::Device::create({config.vulkan_validation.value, config.target.value == "window", config.vulkan_device.value}));
+    ENTOPTIC_TRY(device, gpu::Device::create({config.vulkan_validation.value, may_be_window(config), config.vulkan_device.value}));
     device_ = std::move(device);
     compositor::ServiceOptions options;
     options.path.panel = {static_cast<std::uint32_t>(headset_.display.panel_width),
                           static_cast<std::uint32_t>(headset_.display.panel_height)};
-    ENTOPTIC_TRY(target, make_target(*device_, facts_, options.path.panel));
+    ENTOPTIC_TRY(open, open_target(*device_, stopwatch_, config, headset_.display, facts_.application.name));
+    if (!open.instead.empty()) report_error(open.instead);
     options.path.eye_scale = config.eye_scale.value;
     options.path.display = {headset_.display.photometry.white_cd_m2, headset_.display.photometry.black_cd_m2};
     options.path.measured = headset_.display.photometry.measured;
@@ -171,8 +162,12 @@ Result<void> Host::open_compositor() {
     options.dump.directory = config.dump_dir.value;
     if (!config.dump_dir.value.empty()) options.dump.stages = wanted_pictures(config.dump_stages.value);
     options.dump.every = static_cast<std::uint32_t>(std::min<std::uint64_t>(config.dump_every.value, UINT32_MAX));
-    ENTOPTIC_TRY(frames, compositor::CompositorService::create(*device_, *clock_, headset_, std::move(target), std::move(options)));
+    ENTOPTIC_TRY(frames, compositor::CompositorService::create(*device_, *clock_, headset_, std::move(open.target), std::move(options)));
     frames_ = std::move(frames);
+    if (open.is_panel && headset_.presence) {
+        panel_presence_ = std::make_unique<PanelPresence>(*headset_.presence, *frames_);
+        headset_.presence = panel_presence_.get();
+    }
     watch_ = std::make_unique<LayerWatch>(*frames_);
     return {};
 }

@@ -16,6 +16,17 @@ namespace entoptic::app {
 // The runtime's factory (interfaces/runtime_host.h). A failure is also told to the `entoptic run` that started this process, if one did.
 Result<std::unique_ptr<RuntimeHost>> make_host(const ApplicationIdentity& application);
 
+// Nobody sees a panel that is away, whoever wears the headset.
+class PanelPresence final : public PresenceSource {
+public:
+    PanelPresence(PresenceSource& wearer, const compositor::CompositorService& frames) : wearer_(wearer), frames_(frames) {}
+    bool user_present() override { return frames_.display_lit() && wearer_.user_present(); }
+
+private:
+    PresenceSource& wearer_;
+    const compositor::CompositorService& frames_;
+};
+
 class Host final : public RuntimeHost {
 public:
     static Result<std::unique_ptr<Host>> create(const ApplicationIdentity& application, const Config& config);
@@ -53,6 +64,7 @@ private:
     Headset headset_;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<compositor::CompositorService> frames_;
+    std::unique_ptr<PanelPresence> panel_presence_;
     std::unique_ptr<LayerWatch> watch_;
     StatusFile status_;
 
