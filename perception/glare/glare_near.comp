@@ -13,6 +13,7 @@
 
 layout(local_size_x = 32, local_size_y = 8) in;
 const uint max_side = 2 * max_near_px + 1;
+const uint reach_width = tile_width + 2 * max_near_px, reach_height = tile_height + 2 * max_near_px;
 
 layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer State { ObserverState state[]; };
@@ -26,6 +27,7 @@ layout(scalar, push_constant) uniform PushBlock { NearPush push; };
 #include "perception/glare/glare_radial.glsl"
 
 shared vec3 weights[max_side * max_side];
+shared vec3 light[reach_width * reach_height];      // excess of the pixels in reach of the tile; red < 0: not there, or not to be seen
 shared uint lit_rows;      // a bit for each row of pixels, from max_near_px above the tile to as many below, that holds light above the threshold
 shared int lit_left, lit_right;      // and where, in columns from the tile's first
 
@@ -84,8 +86,11 @@ void main() {
         for (uint i = lane; i < reach_x * reach_y; i += tile_width * tile_height) {
             const int row = int(i / reach_x) - radius, column = int(i % reach_x) - radius;
             const int y = int(corner.y) + row, x = column_of(int(corner.x) + column, sphere);
+            const uint place = (i / reach_x) * reach_width + i % reach_x;
+            light[place] = vec3(-1.0);
             if (x < 0 || y < 0 || y >= int(push.height)) continue;
             const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
+            if (pixel.w > 0.0) light[place] = excess(pixel, threshold);
             if (max(pixel.r, max(pixel.g, pixel.b)) <= threshold) continue;
             atomicOr(lit_rows, 1u << uint(row + int(max_near_px)));
             atomicMin(lit_left, column);
@@ -114,17 +119,15 @@ void main() {
         const bool loses = own != vec3(0.0), white = push.near_from < 0.0 && min(here.r, min(here.g, here.b)) >= threshold;
         const int first = loses ? -radius : max(-radius, lit_left - column), last = loses ? radius : min(radius, lit_right - column);
         vec3 sum = vec3(0.0);
+        const ivec2 local = ivec2(gl_LocalInvocationID.xy);
         for (int dy = -radius; dy <= radius && !white; ++dy) {
-            const int y = int(px.y) + dy;
-            if (y < 0 || y >= int(push.height)) continue;
             // Rows without light matter only to pixels that have some to lose.
-            const bool row_lit = (lit >> uint(y - int(corner.y) + int(max_near_px)) & 1u) != 0u;
+            const bool row_lit = (lit >> uint(local.y + dy + int(max_near_px)) & 1u) != 0u;
             if (!row_lit && !loses) continue;
+            const int row = (local.y + dy + radius) * int(reach_width) + local.x + radius, weight = (dy + radius) * side + radius;
             for (int dx = first; dx <= last; ++dx) {
-                const int x = column_of(int(px.x) + dx, sphere);
-                if (x < 0) continue;
-                const vec4 there = scene[base + uint(y) * push.width + uint(x)];
-                if (there.w > 0.0) sum += weights[(dy + radius) * side + dx + radius] * (excess(there, threshold) - own);
+                const vec3 there = light[row + dx];
+                if (there.r >= 0.0) sum += weights[weight + dx] * (there - own);
             }
         }
         sum *= gaze_window(push.gaze[min(view, 1u)], geometry_direction(g, middle), push.window_sigma);
