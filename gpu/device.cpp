@@ -153,6 +153,9 @@ Result<void> Device::choose_physical(const DeviceOptions& options) {
     software_ = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     std::memcpy(device_uuid_.data(), id.deviceUUID, 16);
     std::memcpy(driver_uuid_.data(), id.driverUUID, 16);
+    if (properties.properties.limits.maxComputeSharedMemorySize < 32768)  // the near field of glare holds a tile's surroundings there
+        return missing(fmt::format("The device {} has {} bytes of shared memory for compute, and 32768 are needed.", properties.properties.deviceName,
+                                   properties.properties.limits.maxComputeSharedMemorySize));
     timestamp_period_ns_ = static_cast<double>(properties.properties.limits.timestampPeriod);
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 

@@ -117,7 +117,7 @@ void main() {
         const vec3 own = push.leaves != 0 ? excess(here, threshold) : vec3(0.0);
         const int column = int(gl_LocalInvocationID.x);
         const bool loses = own != vec3(0.0), white = push.near_from < 0.0 && min(here.r, min(here.g, here.b)) >= threshold;
-        const int first = loses ? -radius : max(-radius, lit_left - column), last = loses ? radius : min(radius, lit_right - column);
+        const int first = loses ? -radius : max(-radius, lit_left - int(tile_width) + 1), last = loses ? radius : min(radius, lit_right);
         vec3 sum = vec3(0.0);
         const ivec2 local = ivec2(gl_LocalInvocationID.xy);
         for (int dy = -radius; dy <= radius && !white; ++dy) {
