@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <unistd.h>
 
@@ -20,10 +21,11 @@ std::string request_file(int pid) { return fmt::format("{}/{}.set", status_folde
 
 bool is_text(const Json& json) { return json.is_string() && json.get_ref<const std::string&>().size() <= longest_text; }
 
-// The list under `key`, if it is one of short texts.
+// The list under `key`, if it is one of short texts, or not there.
 std::optional<std::vector<std::string>> texts_of(const Json& object, const char* key) {
     const auto found = object.find(key);
-    if (found == object.end() || !found->is_array() || found->size() > most_settings) return {};
+    if (found == object.end()) return std::vector<std::string>{};
+    if (!found->is_array() || found->size() > most_settings) return {};
     std::vector<std::string> texts;
     for (const Json& item : *found) {
         if (!is_text(item)) return {};
@@ -32,10 +34,46 @@ std::optional<std::vector<std::string>> texts_of(const Json& object, const char*
     return texts;
 }
 
+std::optional<LiveChoice> choice_of(const Json& object) {
+    const auto models = texts_of(object, "models"), settings = texts_of(object, "settings");
+    const Json preset = object.value("preset", Json(""));
+    if (!models || !settings || !is_text(preset)) return {};
+    return LiveChoice{preset.get<std::string>(), *models, *settings};
+}
+
+// Those of `list` that begin so go, and `item` comes last.
+void replace(std::vector<std::string>& list, const std::string& beginning, const std::string& item) {
+    std::erase_if(list, [&](const std::string& old) { return !beginning.empty() && old.starts_with(beginning); });
+    list.push_back(item);
+}
+
 }  // namespace
 
+LiveChoice joined(LiveChoice now, const LiveChoice& more) {
+    if (!more.preset.empty()) now = {more.preset, {}, {}};
+    for (const std::string& model : more.models) {
+        const std::string slot = model.substr(0, model.find('='));
+        replace(now.models, slot + "=", model);
+        std::erase_if(now.settings, [&](const std::string& old) { return old.starts_with(slot + "."); });
+    }
+    for (const std::string& setting : more.settings) replace(now.settings, setting.substr(0, setting.find('=') + 1), setting);
+    return now;
+}
+
+std::string text_of(const LiveChoice& choice) {
+    std::vector<std::string> words;
+    if (!choice.preset.empty()) words.push_back("preset " + choice.preset);
+    words.insert(words.end(), choice.models.begin(), choice.models.end());
+    words.insert(words.end(), choice.settings.begin(), choice.settings.end());
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
 Result<void> leave_request(int pid, const SettingsRequest& request) {
-    const Json json{{"id", request.id}, {"settings", request.settings}, {"reset", request.reset}};
+    const Json json{{"id", request.id},
+                    {"preset", request.choice.preset},
+                    {"models", request.choice.models},
+                    {"settings", request.choice.settings},
+                    {"reset", request.reset}};
     const std::string path = request_file(pid), part = path + ".part";
     {
         std::ofstream out(part, std::ios::trunc);
@@ -62,19 +100,23 @@ Result<std::optional<SettingsRequest>> take_request(int pid) {
     if (text.size() > most_bytes) return refused("it is too long");
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object() || !json.contains("id") || !is_text(json["id"])) return refused("it is not JSON with an id");
-    SettingsRequest request{json["id"].get<std::string>(), {}, json.value("reset", Json(false)) == Json(true)};
-    const auto settings = texts_of(json, "settings");
-    if (!settings) return refused("its settings are no list of short texts");
-    request.settings = *settings;
-    return request;
+    const auto choice = choice_of(json);
+    if (!choice) return refused("its models and settings are no lists of short texts");
+    return SettingsRequest{json["id"].get<std::string>(), *choice, json.value("reset", Json(false)) == Json(true)};
 }
 
-Json answer_json(const SettingsAnswer& answer) { return {{"id", answer.id}, {"settings", answer.settings}, {"error", answer.error}}; }
+Json answer_json(const SettingsAnswer& answer) {
+    return {{"id", answer.id},
+            {"preset", answer.choice.preset},
+            {"models", answer.choice.models},
+            {"settings", answer.choice.settings},
+            {"error", answer.error}};
+}
 
 std::optional<SettingsAnswer> answer_of(const Json& status) {
     const auto found = status.find("adjusted");
     if (found == status.end() || !found->is_object() || !found->contains("id") || !is_text((*found)["id"])) return {};
-    SettingsAnswer answer{(*found)["id"].get<std::string>(), texts_of(*found, "settings").value_or(std::vector<std::string>{}), ""};
+    SettingsAnswer answer{(*found)["id"].get<std::string>(), choice_of(*found).value_or(LiveChoice{}), ""};
     if (const auto error = found->find("error"); error != found->end() && error->is_string()) answer.error = error->get<std::string>();
     return answer;
 }

@@ -1,4 +1,4 @@
-// Parameters changed while a runtime runs: `entoptic set` leaves a request beside the runtime's status, `<pid>.set` in status_folder(); the
+// Models and parameters changed while a runtime runs: `entoptic set` leaves a request beside the runtime's status, `<pid>.set` in status_folder(); the
 // runtime takes it, applies all of it or nothing, and answers in its status.
 #pragma once
 
@@ -11,10 +11,21 @@
 
 namespace entoptic::app {
 
+// On top of the choice that a runtime was started with.
+struct LiveChoice {
+    std::string preset;                 // instead of that whole choice; empty: it stands
+    std::vector<std::string> models;    // "glare=cie135"
+    std::vector<std::string> settings;  // "glare.age=70"
+};
+// `more` on top of `now`: a preset ends all before it, a model the settings of its slot, a setting the one of the same name.
+LiveChoice joined(LiveChoice now, const LiveChoice& more);
+// A choice in words, as one would type it; empty for none.
+std::string text_of(const LiveChoice& choice);
+
 struct SettingsRequest {
-    std::string id;                     // the answer names it
-    std::vector<std::string> settings;  // "glare.age=70"; they go on top of those that are in force
-    bool reset = false;                 // first go back to what the runtime was started with
+    std::string id;      // the answer names it
+    LiveChoice choice;   // goes on top of what is in force
+    bool reset = false;  // first go back to what the runtime was started with
 };
 
 // Leaves a request for the runtime of this process, whole; an older one that it has not taken goes. Errors: the folder cannot be written.
@@ -25,8 +36,8 @@ Result<std::optional<SettingsRequest>> take_request(int pid);
 // The runtime's answer, part "adjusted" of its status.
 struct SettingsAnswer {
     std::string id;
-    std::vector<std::string> settings;  // in force on top of what the runtime was started with
-    std::string error;                  // why the request changed nothing; empty: it was done
+    LiveChoice choice;  // in force
+    std::string error;  // why the request changed nothing; empty: it was done
 };
 nlohmann::ordered_json answer_json(const SettingsAnswer& answer);
 // None when the status has no such answer.

@@ -1,4 +1,4 @@
-// `entoptic set`: parameters of the models of a running runtime.
+// `entoptic set`: the preset, models and parameters of a running runtime.
 #include "app/cli/command.h"
 #include "app/cli/output.h"
 #include "app/live_settings.h"
@@ -20,7 +20,7 @@ constexpr auto patience = 5s;  // a runtime looks for requests some twenty times
 constexpr auto look_every = 20ms;
 
 struct Options {
-    std::vector<std::string> settings;
+    LiveChoice choice;
     int pid = 0;
     bool reset = false, json = false;
 };
@@ -57,10 +57,11 @@ Result<SettingsAnswer> answer_to(const std::string& id, int pid) {
 }
 
 Result<int> set(const Options& o) {
-    if (o.settings.empty() && !o.reset) return usage_error("Nothing to set: write SLOT.PARAMETER=VALUE, such as glare.age=70, or --reset.");
+    if (text_of(o.choice).empty() && !o.reset)
+        return usage_error("Nothing to set: write SLOT.PARAMETER=VALUE, such as glare.age=70, or --model, --preset or --reset.");
     ENTOPTIC_TRY(pid, chosen_runtime(o));
     const std::string id = fmt::format("{}-{}", getpid(), std::chrono::steady_clock::now().time_since_epoch().count());
-    ENTOPTIC_CHECK(leave_request(pid, {id, o.settings, o.reset}));
+    ENTOPTIC_CHECK(leave_request(pid, {id, o.choice, o.reset}));
     ENTOPTIC_TRY(answer, answer_to(id, pid));
     if (o.json) {
         Json document = answer_json(answer);
@@ -70,7 +71,7 @@ Result<int> set(const Options& o) {
     if (!answer.error.empty()) return usage_error(answer.error);
     if (!o.json)
         fmt::print("In force in process {}: {}\n", pid,
-                   answer.settings.empty() ? "what it was started with" : fmt::format("{}", fmt::join(answer.settings, ", ")));
+                   text_of(answer.choice).empty() ? "what it was started with" : text_of(answer.choice));
     return 0;
 }
 
@@ -78,8 +79,10 @@ Result<int> set(const Options& o) {
 
 void add_set(CLI::App& app, Action& action) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("set", "Change parameters of the models while a runtime runs");
-    command->add_option("settings", o->settings, "SLOT.PARAMETER=VALUE; all of them take effect, or none");
+    CLI::App* command = app.add_subcommand("set", "Change preset, models and parameters while a runtime runs");
+    command->add_option("settings", o->choice.settings, "SLOT.PARAMETER=VALUE; all of them take effect, or none");
+    command->add_option("--model", o->choice.models, "SLOT=NAME, another model, or none; what the others have in memory stays");
+    command->add_option("--preset", o->choice.preset, "Another preset, instead of all that was chosen before");
     command->add_option("--pid", o->pid, "Process of the runtime, when several run (entoptic status)")->check(CLI::PositiveNumber);
     command->add_flag("--reset", o->reset, "Go back to what the runtime was started with first");
     command->add_flag("--json", o->json, "One JSON document on standard output");

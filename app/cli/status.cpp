@@ -75,8 +75,8 @@ void print_runtime(const Json& runtime) {
     for (const Json& effect : runtime.value("effects", Json::array()))
         fmt::print("  {:<12} {} {}: {}\n", text_of(effect, "slot"), text_of(effect, "model"), effect.value("on", false) ? "on" : "off",
                    text_of(effect, "why"));
-    if (const auto adjusted = answer_of(runtime); adjusted && !adjusted->settings.empty())
-        fmt::print("  {:<12} {}\n", "set", fmt::join(adjusted->settings, ", "));
+    if (const auto adjusted = answer_of(runtime); adjusted && !text_of(adjusted->choice).empty())
+        fmt::print("  {:<12} {}\n", "set", text_of(adjusted->choice));
     for (const Json& error : runtime.value("errors", Json::array()))
         fmt::print("  problem      {}\n", error.is_string() ? error.get<std::string>() : error.dump());
 }

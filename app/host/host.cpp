@@ -238,19 +238,13 @@ bool Host::adjust() {
 }
 
 Result<void> Host::apply(const SettingsRequest& request) {
-    std::vector<std::string> live = request.reset ? std::vector<std::string>{} : facts_.adjusted.settings;
-    for (const std::string& setting : request.settings) {
-        // A parameter that is set again takes its old place.
-        const std::string name = setting.substr(0, setting.find('=') + 1);
-        std::erase_if(live, [&](const std::string& old) { return !name.empty() && old.starts_with(name); });
-        live.push_back(setting);
-    }
-    std::vector<std::string> settings = facts_.config.setting_texts();
-    settings.insert(settings.end(), live.begin(), live.end());
-    ENTOPTIC_TRY(selection, select_effects(facts_.config.preset.value, facts_.config.model_names(), settings, facts_.config.observer.value,
-                                           perception::Viewer::wearer));
+    LiveChoice live = joined(request.reset ? LiveChoice{} : facts_.adjusted.choice, request.choice);
+    LiveChoice all{facts_.config.preset.value, facts_.config.model_names(), facts_.config.setting_texts()};
+    all = joined(std::move(all), live);
+    ENTOPTIC_TRY(selection,
+                 select_effects(all.preset, all.models, all.settings, facts_.config.observer.value, perception::Viewer::wearer));
     facts_.selection = selection;
-    facts_.adjusted.settings = std::move(live);
+    facts_.adjusted.choice = std::move(live);
     frames_->select(std::move(selection));
     return {};
 }

@@ -31,7 +31,8 @@ protected:
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     void configure(std::vector<std::pair<std::string, std::string>> values) const {
         for (const auto& [key, value] : {std::pair{"panel", "\"64x72\""}, {"clock", "\"lockstep\""}, {"preset", "\"off\""}})
-            if (std::none_of(values.begin(), values.end(), [&](const auto& wanted) { return wanted.first == key; })) values.emplace_back(key, value);
+            if (std::none_of(values.begin(), values.end(), [&](const auto& wanted) { return wanted.first == key; }))
+                values.emplace_back(key, value);
         ASSERT_TRUE(write_overlay(path("overlay.toml"), {"", path("launcher"), values}));
         setenv("ENTOPTIC_CONFIG", path("overlay.toml").c_str(), 1);
     }
@@ -118,10 +119,10 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
     configure({{"preset", "\"combined\""}});
     auto host = open();
     ASSERT_TRUE(host) << host.error().message;
-    const auto set = [](std::vector<std::string> settings, bool reset = false) {
+    const auto choose = [](LiveChoice choice, bool reset = false) {
         static int number = 0;
         const std::string id = std::to_string(++number);
-        EXPECT_TRUE(leave_request(getpid(), {id, std::move(settings), reset}));
+        EXPECT_TRUE(leave_request(getpid(), {id, std::move(choice), reset}));
         for (int i = 0; i < 500; ++i) {
             for (const RunningRuntime& runtime : running_runtimes())
                 if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
@@ -130,17 +131,34 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
         ADD_FAILURE() << "no answer";
         return SettingsAnswer{};
     };
+    const auto set = [&](std::vector<std::string> settings, bool reset = false) { return choose({"", {}, std::move(settings)}, reset); };
     using List = std::vector<std::string>;
-    EXPECT_EQ(set({"glare.age=70", "glare.pigment=1"}).settings, (List{"glare.age=70", "glare.pigment=1"}));
-    EXPECT_EQ(set({"glare.age=60"}).settings, (List{"glare.pigment=1", "glare.age=60"}));
+    EXPECT_EQ(set({"glare.age=70", "glare.pigment=1"}).choice.settings, (List{"glare.age=70", "glare.pigment=1"}));
+    EXPECT_EQ(set({"glare.age=60"}).choice.settings, (List{"glare.pigment=1", "glare.age=60"}));
     // All or nothing, and the reason with the range.
     const SettingsAnswer wrong = set({"glare.pigment=0", "glare.age=900"});
     EXPECT_NE(wrong.error.find("glare.age = 900 is out of range: 10 to 90"), std::string::npos) << wrong.error;
-    EXPECT_EQ(wrong.settings, (List{"glare.pigment=1", "glare.age=60"}));
+    EXPECT_EQ(wrong.choice.settings, (List{"glare.pigment=1", "glare.age=60"}));
     EXPECT_NE(set({"glare.photographic=1"}).error.find("counts an effect twice"), std::string::npos);
     EXPECT_NE(set({"nonsense"}).error.find("SLOT.PARAMETER=VALUE"), std::string::npos);
     show(**host, 2);
-    EXPECT_EQ(set({}, true).settings, List{});
+    EXPECT_EQ(set({}, true).choice.settings, List{});
+    // Another model ends the settings of its slot, another preset all that came before; the states of the rest go on.
+    EXPECT_EQ(set({"glare.age=70", "tone.knee=0.7"}).error, "");
+    const SettingsAnswer other = choose({"", {"glare=cie135"}, {}});
+    EXPECT_EQ(other.error, "");
+    EXPECT_EQ(other.choice.models, List{"glare=cie135"});
+    EXPECT_EQ(other.choice.settings, List{"tone.knee=0.7"});
+    show(**host, 2);
+    EXPECT_NE(choose({"", {"glare=sparkle"}, {}}).error.find("sparkle"), std::string::npos);
+    const SettingsAnswer paper = choose({"luidolt2020", {}, {"tone.key_scale=0.5"}});
+    EXPECT_EQ(paper.choice.preset, "luidolt2020") << paper.error;
+    EXPECT_EQ(paper.choice.models, List{});
+    show(**host, 2);
+    EXPECT_EQ(choose({"off", {}, {}}).error, "");
+    show(**host, 2);
+    EXPECT_EQ(text_of(choose({}, true).choice), "");
+    show(**host, 2);
     EXPECT_FALSE(fs::exists(path("entoptic/" + std::to_string(getpid()) + ".set")));
 }
 
@@ -149,8 +167,9 @@ TEST_F(HostTest, RequestsThatAreNoneAreRefused) {
     auto host = open();
     ASSERT_TRUE(host) << host.error().message;
     const std::string request = path("entoptic/" + std::to_string(getpid()) + ".set");
-    for (const std::string& text : {std::string("nonsense"), std::string("[]"), std::string(R"({"id":7})"), std::string(R"({"id":"a","settings":[1]})"),
-                                    std::string(R"({"id":"a","settings":{"b":"c"}})"), std::string(100000, 'x')}) {
+    for (const std::string& text :
+         {std::string("nonsense"), std::string("[]"), std::string(R"({"id":7})"), std::string(R"({"id":"a","settings":[1]})"),
+          std::string(R"({"id":"a","settings":{"b":"c"}})"), std::string(100000, 'x')}) {
         std::ofstream(request) << text;
         for (int i = 0; i < 500 && fs::exists(request); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
         EXPECT_FALSE(fs::exists(request)) << text.substr(0, 40);

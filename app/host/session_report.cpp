@@ -129,6 +129,7 @@ Json report_json(const SessionFacts& facts, const compositor::RunReport& report,
             {"latency_ms", distribution_json(report.latency_ms)},
             {"process", process_json(facts, report)},
             {"effects", effect_totals_json(facts, report)},
+            {"adjusted", answer_json(facts.adjusted)},
             {"photometry", photometry_json(facts, report)},
             {"state", state_json(report)},
             {"errors", errors}};
