@@ -128,6 +128,45 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Curved,
                          ::testing::Combine(::testing::Values(LayerKind::cylinder, LayerKind::equirect),
                                             ::testing::Values(0.0f, 1.5f, std::numeric_limits<float>::infinity())));
 
+// The same picture stored from its lowest row on, in a part of a larger image, is shown the same way up.
+TEST(BottomUp, IsThePictureOfTheTurnedImage) {
+    Screen screen(false);
+    const int width = 64, height = 48;
+    const auto place = [](int x, int y) { return Linear{(float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48, 1, 1}; };
+    const Texture down = make_float_texture(test_device(), screen.pool, width, height, place);
+    const Texture up =
+        make_float_texture(test_device(), screen.pool, width, height, [&](int x, int y) { return place(x, height - 1 - y); });
+    CurvedSurface surface;
+    surface.radius_m = 1.5f;
+    surface.longitude_extent = 1.2f;
+    surface.latitude_top = 0.5f;
+    surface.latitude_bottom = -0.3f;
+    surface.height_m = 1.4f;
+    std::vector<Layer> layers{projection_layer(down, screen.options.eyes), quad_layer(down, {0.1f, 0.05f, -1}, 1.1f, 0.9f),
+                              curved(LayerKind::cylinder, down, surface), curved(LayerKind::equirect, down, surface)};
+    for (Layer& layer : layers) {
+        layer.luminance = {1, 0, LuminanceSource::layer_extension};
+        Layer turned = layer;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            layer.views[eye].image = {down.swapchain, 0, 0, 6, 4, 50, 30};
+            turned.views[eye].image = {up.swapchain, 0, 0, 6, height - 4 - 30, 50, 30, true};
+        }
+        screen.compose({layer});
+        const ImageF expected = screen.path->warp_picture(0);
+        screen.compose({turned});
+        const ImageF found = screen.path->warp_picture(0);
+        int seen = 0;
+        for (int y = 0; y < expected.height; ++y) {
+            for (int x = 0; x < expected.width; ++x) {
+                seen += expected.at(x, y, 2) > 0 ? 1 : 0;
+                // A 256th of a texel, to which places are rounded.
+                for (int c = 0; c < 3; ++c) ASSERT_NEAR(found.at(x, y, c), expected.at(x, y, c), 1.0 / 256 / 48 + 1e-6) << int(layer.kind);
+            }
+        }
+        EXPECT_GT(seen, 500) << int(layer.kind);
+    }
+}
+
 // A board of single black and white texels, sixteen a pixel: the mean of its light, not one texel of it.
 TEST(Minified, ABoardIsGrey) {
     for (const bool fuse : {false, true}) {

@@ -169,6 +169,15 @@ TEST(Depth, SubImageAndResolutionAreTheDepthsOwn) {
     expect_dioptres(screen.dioptres({layer}), [](int x, int y) { return (x < 32 ? 0.25 : 0.5) * cosine(x, y); });
 }
 
+TEST(Depth, OfABottomUpPictureIsTurnedOver) {
+    Screen& screen = shared_screen();
+    Layer layer = screen.deep_layer<float>(4, 16, VK_FORMAT_D32_SFLOAT, {{}, 0, 1, infinity, 1}, [](int, int y) {
+        return y < 8 ? 0.9f : y < 12 ? 0.25f : 0.5f;
+    });
+    for (entoptic::LayerView& view : layer.views) view.depth.image.y = 8, view.depth.image.height = 8, view.depth.image.bottom_up = true;
+    expect_dioptres(screen.dioptres({layer}), [](int x, int y) { return (y < 32 ? 0.5 : 0.25) * cosine(x, y); });
+}
+
 TEST(Depth, TurnsWithTheHeadButKeepsItsDistance) {
     Screen& screen = shared_screen();
     Pose head;

@@ -150,10 +150,11 @@ Result<SampledImage> ImageUse::find(const SubImage& wanted, bool depth) const {
 }
 
 SwapchainPool::SwapchainPool(gpu::Device& device) : device_(device), state_(std::make_shared<PoolState>()) {
-    constexpr std::array<VkFormat, 11> wanted{VK_FORMAT_R8G8B8A8_SRGB,
+    constexpr std::array<VkFormat, 12> wanted{VK_FORMAT_R8G8B8A8_SRGB,
                                               VK_FORMAT_B8G8R8A8_SRGB,
                                               VK_FORMAT_R16G16B16A16_SFLOAT,
                                               VK_FORMAT_R32G32B32A32_SFLOAT,
+                                              VK_FORMAT_R16G16B16A16_UNORM,
                                               VK_FORMAT_A2B10G10R10_UNORM_PACK32,
                                               VK_FORMAT_R8G8B8A8_UNORM,
                                               VK_FORMAT_B8G8R8A8_UNORM,

@@ -105,7 +105,7 @@ std::optional<DirectionMap> curved_map(const Layer& layer, const SubImage& image
     return DirectionMap{d[0], d[1], d[2]};
 }
 
-std::optional<DirectionMap> direction_map(const Layer& layer, const entoptic::LayerView& source, const DoublePose& eye, LayerView& view) {
+std::optional<DirectionMap> upright_map(const Layer& layer, const entoptic::LayerView& source, const DoublePose& eye, LayerView& view) {
     switch (layer.kind) {
         case LayerKind::projection:
             return projection_map(source, eye);
@@ -114,6 +114,20 @@ std::optional<DirectionMap> direction_map(const Layer& layer, const entoptic::La
         default:
             return curved_map(layer, source.image, eye, view);
     }
+}
+
+// The same for pictures whose lowest row comes first: row y of the sub-image counts from its other edge.
+std::optional<DirectionMap> direction_map(const Layer& layer, const entoptic::LayerView& source, const DoublePose& eye, LayerView& view) {
+    auto map = upright_map(layer, source, eye, view);
+    if (!map || !source.image.bottom_up) return map;
+    const double both_edges = 2.0 * source.image.y + source.image.height;
+    if (is_curved(layer.kind)) {
+        view.texel_scale.y = -view.texel_scale.y;
+        view.texel_bias.y = static_cast<float>(both_edges) - view.texel_bias.y;
+    } else {
+        map->y = both_edges * map->w - map->y;
+    }
+    return map;
 }
 
 // choice: bilinear interpolation reads every texel while a pixel's neighbours look no more than two texels on.

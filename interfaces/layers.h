@@ -13,13 +13,14 @@ namespace entoptic {
 constexpr int eye_count = 2;              // 0 left, 1 right
 constexpr std::uint32_t max_layers = 16;  // XrSystemGraphicsProperties::maxLayerCount
 
-// A rectangle of one array slice of one image of a swapchain. Texels, origin at the top left.
+// A rectangle of one array slice of one image of a swapchain. Texels, counted from the first of the first row in memory.
 // The runtime has checked that it lies inside the image.
 struct SubImage {
     std::uint64_t swapchain = 0;    // FrameService's id
     std::uint32_t image_index = 0;  // of the image released last
     std::uint32_t array_layer = 0;
     std::int32_t x = 0, y = 0, width = 0, height = 0;  // may be zero: the layer shows nothing then
+    bool bottom_up = false;  // the first row is the picture's lowest (OpenGL), else its highest
 };
 
 // How linear layer values become luminance: cd/m² = value * cd_per_unit + offset_cd, for R = G = B = value.
