@@ -165,6 +165,11 @@ std::vector<PresentationRecord> CompositorService::presentation_records(std::siz
     return log_.records(count);
 }
 
+void CompositorService::add_cpu_time(const std::string& stage, double ms) {
+    const std::lock_guard lock(mutex_);
+    statistics_.add_cpu(stage, ms);
+}
+
 void CompositorService::select(perception::Selection selection) {
     const std::lock_guard lock(mutex_);
     new_selection_ = std::move(selection);

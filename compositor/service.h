@@ -52,6 +52,7 @@ public:
     bool exit_wanted() const override;
     std::optional<std::array<float, 2>> adaptation_cd_m2() const override;
     std::vector<PresentationRecord> presentation_records(std::size_t count) const override;
+    void add_cpu_time(const std::string& stage, double ms) override;
 
     RunReport report() const;
     // Somebody could see pictures now: the display is not away.

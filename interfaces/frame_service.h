@@ -76,6 +76,12 @@ public:
     virtual std::optional<std::array<float, 2>> adaptation_cd_m2() const { return std::nullopt; }
     // Records of the last frames, oldest first, at most `count`.
     virtual std::vector<PresentationRecord> presentation_records(std::size_t count) const = 0;
+
+    // The application's side spent `ms` of its own time on `stage` of a frame: for the report.
+    virtual void add_cpu_time(const std::string& stage, double ms) {
+        static_cast<void>(stage);
+        static_cast<void>(ms);
+    }
 };
 
 }  // namespace entoptic

@@ -30,6 +30,8 @@ public:
     // The session clock: CLOCK_MONOTONIC in real time, virtual in lockstep. XrTime is this clock's.
     virtual Clock& clock() = 0;
     virtual bool lockstep() const = 0;
+    // Real time that passes, to measure how long work takes; not XrTime.
+    virtual Clock& stopwatch() = 0;
     virtual FrameService& frames() = 0;
     // Luminance of layers whose application does not say: from the command line, an application profile, or the SDR default.
     virtual LayerLuminance default_luminance() const = 0;

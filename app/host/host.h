@@ -35,6 +35,7 @@ public:
     Headset& headset() override { return headset_; }
     Clock& clock() override { return *clock_; }
     bool lockstep() const override { return facts_.config.clock.value == "lockstep"; }
+    Clock& stopwatch() override { return stopwatch_; }
     FrameService& frames() override { return *watch_; }
     LayerLuminance default_luminance() const override { return facts_.luminance; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override;

@@ -41,6 +41,7 @@ public:
     bool exit_wanted() const override { return service_.exit_wanted(); }
     std::optional<std::array<float, 2>> adaptation_cd_m2() const override { return service_.adaptation_cd_m2(); }
     std::vector<PresentationRecord> presentation_records(std::size_t count) const override { return service_.presentation_records(count); }
+    void add_cpu_time(const std::string& stage, double ms) override { service_.add_cpu_time(stage, ms); }
 
 private:
     FrameService& service_;

@@ -2,6 +2,7 @@
 // The window on an X server of our own; and the message where there is none.
 #include "compositor/targets/window.h"
 
+#include "base/testing/x_server.h"
 #include "compositor/testing/frame_harness.h"
 #include "compositor/testing/virtual_server.h"
 
@@ -36,7 +37,7 @@ TEST(Window, WithoutAnXServerSaysWhatToDo) {
 }
 
 TEST(Window, ShowsFrames) {
-    const VirtualServer server;
+    const entoptic::testing::VirtualServer server;
     if (server.display().empty()) GTEST_SKIP() << "install the package xvfb";
     setenv("DISPLAY", server.display().c_str(), 1);
     const auto device = window_device();

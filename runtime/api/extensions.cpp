@@ -4,7 +4,7 @@ namespace entoptic::runtime::api {
 
 namespace {
 
-// Sorted by name. Names and revisions that Debian's headers lack, or that need vulkan.h, are spelled out; the revisions are those of the
+// Sorted by name. Names and revisions that Debian's headers lack, or that need headers of a graphics API, are spelled out; the revisions are those of the
 // registry of OpenXR 1.1.41.
 const Extension offered[] = {
     {"XR_BD_controller_interaction", 2},
@@ -38,11 +38,13 @@ const Extension offered[] = {
     {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, XR_KHR_convert_timespec_time_SPEC_VERSION},
     {XR_KHR_LOCATE_SPACES_EXTENSION_NAME, 1},
     {XR_KHR_MAINTENANCE1_EXTENSION_NAME, 1},
+    {"XR_KHR_opengl_enable", 12},
     {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_KHR_visibility_mask_SPEC_VERSION},
     {"XR_KHR_vulkan_enable", 8},
     {"XR_KHR_vulkan_enable2", 2},
     {"XR_META_touch_controller_plus", 1},
     {"XR_ML_ml2_controller_interaction", 1},
+    {"XR_MNDX_egl_enable", 2},
     {XR_MND_HEADLESS_EXTENSION_NAME, XR_MND_headless_SPEC_VERSION},
     {XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_VARJO_quad_views_SPEC_VERSION},
 };

@@ -81,6 +81,8 @@ Outcome resolve_sub_image(const LayerContext& context, const XrSwapchainSubImage
     image.y = given.imageRect.offset.y;
     image.width = given.imageRect.extent.width;
     image.height = given.imageRect.extent.height;
+    // OpenGL's and Vulkan's tables of cube faces say the same of a texel in memory.
+    image.bottom_up = !cube && context.session->graphics()->bottom_up();
     return XR_SUCCESS;
 }
 

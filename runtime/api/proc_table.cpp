@@ -3,7 +3,7 @@
 #include "runtime/api/extensions.h"
 #include "runtime/api/functions.h"
 #include "runtime/api/verify.h"
-#include "runtime/graphics/vulkan_functions.h"
+#include "runtime/graphics/bindings.h"
 #include "runtime/runtime.h"
 
 #include <string_view>
@@ -146,11 +146,10 @@ Outcome look_up(XrInstance handle, std::string_view name, PFN_xrVoidFunction* fu
             return XR_SUCCESS;
         }
     }
-    for (const graphics::FunctionEntry& entry : graphics::vulkan_functions()) {
-        if (entry.name == name && instance && instance->enabled(entry.extension)) {
-            *function = entry.function;
-            return XR_SUCCESS;
-        }
+    const graphics::FunctionEntry* graphics = graphics::find_function(name);
+    if (graphics && instance && instance->enabled(graphics->extension)) {
+        *function = graphics->function;
+        return XR_SUCCESS;
     }
     return error(XR_ERROR_FUNCTION_UNSUPPORTED, "{} is not a function of the application's version of OpenXR or of an enabled extension",
                  name);

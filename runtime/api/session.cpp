@@ -4,7 +4,7 @@
 #include "runtime/api/call.h"
 #include "runtime/api/functions.h"
 #include "runtime/api/verify.h"
-#include "runtime/graphics/vulkan_functions.h"
+#include "runtime/graphics/bindings.h"
 
 namespace entoptic::runtime::api {
 

@@ -1,6 +1,7 @@
 // The application's Vulkan device and queue, as xrCreateSession got them.
 #pragma once
 
+#include "runtime/graphics/image_request.h"
 #include "runtime/graphics/vulkan_dispatch.h"
 
 #include "runtime/objects/graphics.h"
@@ -33,8 +34,5 @@ public:
 private:
     std::shared_ptr<VulkanContext> context_;
 };
-
-bool is_depth_format(VkFormat format);
-VkImageAspectFlags aspect_of(VkFormat format);
 
 }  // namespace entoptic::runtime::graphics

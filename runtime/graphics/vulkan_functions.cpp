@@ -70,7 +70,7 @@ Outcome requirements(Instance& instance, XrGraphicsRequirementsVulkanKHR* out) {
     ENTOPTIC_XR_TRY(require(out, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR, "graphicsRequirements"));
     out->minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
     out->maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
-    instance.note_graphics_requirements();
+    instance.note_graphics_requirements(GraphicsApi::vulkan);
     return XR_SUCCESS;
 }
 
@@ -238,15 +238,15 @@ Outcome fill_context(Instance& instance, const XrGraphicsBindingVulkanKHR& bindi
 
 std::span<const FunctionEntry> vulkan_functions() { return entries; }
 
-bool has_graphics_binding(const void* chain) { return api::find_in_chain(chain, XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR) != nullptr; }
+bool has_vulkan_binding(const void* chain) { return api::find_in_chain(chain, XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR) != nullptr; }
 
-Outcome make_graphics_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device) {
+Outcome make_vulkan_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device) {
     const auto* binding = api::chained<XrGraphicsBindingVulkanKHR>(chain, XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR);
     const bool enabled = instance.enabled(enable) || instance.enabled(enable2);
     if (!binding || !enabled) {
         return device_invalid("no graphics binding: enable XR_KHR_vulkan_enable2 and chain XrGraphicsBindingVulkan2KHR");
     }
-    if (!instance.graphics_requirements_asked()) {
+    if (!instance.graphics_requirements_asked(GraphicsApi::vulkan)) {
         return error(XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
                      "call xrGetVulkanGraphicsRequirements2KHR (or KHR) before xrCreateSession");
     }

@@ -1,28 +1,13 @@
-// XR_KHR_vulkan_enable and XR_KHR_vulkan_enable2: their functions for the proc-address table, and the graphics binding of a session.
+// XR_KHR_vulkan_enable and XR_KHR_vulkan_enable2: see graphics/bindings.h.
 #pragma once
 
-#include "runtime/objects/graphics.h"
-#include "runtime/objects/instance.h"
-#include "runtime/openxr.h"
-
-#include <memory>
-#include <span>
-#include <string_view>
+#include "runtime/graphics/bindings.h"
 
 namespace entoptic::runtime::graphics {
 
-struct FunctionEntry {
-    std::string_view name;
-    const char* extension;
-    PFN_xrVoidFunction function;
-};
 std::span<const FunctionEntry> vulkan_functions();
-
-// Whether the chain of XrSessionCreateInfo names a graphics device: a headless session's does not.
-bool has_graphics_binding(const void* chain);
-
-// From the chain of XrSessionCreateInfo. XR_ERROR_GRAPHICS_DEVICE_INVALID when there is no Vulkan binding of the device that
-// xrGetVulkanGraphicsDevice named; XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING.
-Outcome make_graphics_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device);
+bool has_vulkan_binding(const void* chain);
+// XR_ERROR_GRAPHICS_DEVICE_INVALID also when the binding's device is not the one that xrGetVulkanGraphicsDevice named.
+Outcome make_vulkan_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device);
 
 }  // namespace entoptic::runtime::graphics

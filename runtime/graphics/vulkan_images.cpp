@@ -1,35 +1,12 @@
 #include "runtime/graphics/vulkan_images.h"
 
-#include <unistd.h>
+#include "runtime/graphics/vulkan_import.h"
 
 namespace entoptic::runtime::graphics {
 
 namespace {
 
 constexpr std::uint64_t longest_gpu_wait_ns = 20'000'000'000;
-
-Outcome failed(const char* what, VkResult result) {
-    const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return error(memory ? XR_ERROR_OUT_OF_MEMORY : XR_ERROR_RUNTIME_FAILURE, "{} failed in the application's Vulkan device (VkResult {})",
-                 what, static_cast<int>(result));
-}
-
-// File descriptors that nobody has taken over are closed.
-struct Descriptors {
-    std::vector<ImageMemory>& memories;
-    ~Descriptors() {
-        for (ImageMemory& memory : memories) {
-            if (memory.fd >= 0) ::close(memory.fd);
-        }
-    }
-};
-
-// The memory type of an import must be the exporter's: the lowest of the bits both sides allow.
-std::uint32_t memory_type(std::uint32_t bits) {
-    std::uint32_t index = 0;
-    while (index < 32 && (bits & (1u << index)) == 0) ++index;
-    return index;
-}
 
 }  // namespace
 
@@ -46,58 +23,6 @@ VulkanImages::~VulkanImages() {
     if (pool_) vk.DestroyCommandPool(context_->device, pool_, nullptr);
 }
 
-Outcome VulkanImages::create_image(Image& image, const ImageMemory& memory) {
-    VkExternalMemoryImageCreateInfo external{};
-    external.sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO;
-    external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.pNext = &external;
-    info.flags = memory.vk_create_flags;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = static_cast<VkFormat>(memory.vk_format);
-    info.extent = {memory.width, memory.height, 1};
-    info.mipLevels = memory.mip_levels;
-    info.arrayLayers = memory.array_layers;
-    info.samples = static_cast<VkSampleCountFlagBits>(memory.samples);
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = memory.vk_usage;
-    info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
-    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-    const VkResult result = context_->functions.CreateImage(context_->device, &info, nullptr, &image.image);
-    return result == VK_SUCCESS ? Outcome() : failed("vkCreateImage", result);
-}
-
-Outcome VulkanImages::import_memory(Image& image, ImageMemory& memory) {
-    const DeviceDispatch& vk = context_->functions;
-    VkMemoryRequirements requirements{};
-    vk.GetImageMemoryRequirements(context_->device, image.image, &requirements);
-    const std::uint32_t type = memory_type(requirements.memoryTypeBits & memory.memory_type_bits);
-    if (type == 32 || requirements.size > memory.size) {
-        return error(XR_ERROR_RUNTIME_FAILURE,
-                     "the compositor's image does not fit the application's device; both must be the same GPU and driver");
-    }
-    VkMemoryDedicatedAllocateInfo dedicated{};
-    dedicated.sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO;
-    dedicated.image = image.image;
-    VkImportMemoryFdInfoKHR import{};
-    import.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR;
-    import.pNext = &dedicated;
-    import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
-    import.fd = memory.fd;
-    VkMemoryAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate.pNext = &import;
-    allocate.allocationSize = memory.size;
-    allocate.memoryTypeIndex = type;
-    if (VkResult result = vk.AllocateMemory(context_->device, &allocate, nullptr, &image.memory); result != VK_SUCCESS) {
-        return failed("vkAllocateMemory of an imported image", result);
-    }
-    memory.fd = -1;  // the device's now
-    const VkResult result = vk.BindImageMemory(context_->device, image.image, image.memory, 0);
-    return result == VK_SUCCESS ? Outcome() : failed("vkBindImageMemory", result);
-}
-
 Outcome VulkanImages::import(std::vector<ImageMemory> memories) {
     const Descriptors descriptors{memories};
     if (memories.empty()) return error(XR_ERROR_RUNTIME_FAILURE, "the compositor gave no image");
@@ -107,8 +32,7 @@ Outcome VulkanImages::import(std::vector<ImageMemory> memories) {
             return error(XR_ERROR_RUNTIME_FAILURE, "the compositor's image lies on another GPU than the application's");
         }
         Image& image = *images_.emplace_back(std::make_unique<Image>());
-        ENTOPTIC_XR_TRY(create_image(image, memory));
-        ENTOPTIC_XR_TRY(import_memory(image, memory));
+        ENTOPTIC_XR_TRY(import_image(context_->functions, context_->device, memory, image.image, image.memory));
         const VkFenceCreateInfo info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
         for (VkFence* fence : {&image.acquired, &image.released}) {
             const VkResult result = context_->functions.CreateFence(context_->device, &info, nullptr, fence);

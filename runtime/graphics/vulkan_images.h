@@ -39,8 +39,6 @@ private:
         bool used = false;              // false: contents and layout are undefined
     };
 
-    Outcome create_image(Image& image, const ImageMemory& memory);
-    Outcome import_memory(Image& image, ImageMemory& memory);
     Outcome make_commands(const ImageMemory& description);
     Outcome record(VkCommandBuffer commands, const VkImageMemoryBarrier& barrier);
     Outcome submit(VkCommandBuffer commands, VkFence fence, bool& pending);

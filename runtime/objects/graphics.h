@@ -32,6 +32,8 @@ public:
     virtual ~GraphicsDevice() = default;
     // The graphics API's numbers of the formats that describe() takes, preferred first. `compositor` are FrameService::swapchain_formats().
     virtual std::vector<std::int64_t> formats(const std::vector<std::int64_t>& compositor) const = 0;
+    // The first row of an image is its lowest (OpenGL). Faces of cubes are alike in all APIs.
+    virtual bool bottom_up() const { return false; }
     // XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, XR_ERROR_FEATURE_UNSUPPORTED, XR_ERROR_VALIDATION_FAILURE; else fills what is API specific:
     // format, usage and create flags.
     virtual Outcome describe(const XrSwapchainCreateInfo& info, SwapchainRequest& request) const = 0;

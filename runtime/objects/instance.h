@@ -19,6 +19,8 @@ namespace entoptic::runtime {
 // The only system there is: the host's headset.
 constexpr XrSystemId headset_system = 1;
 
+enum class GraphicsApi : unsigned { vulkan = 1, opengl = 2 };
+
 class Instance final : public Object {
 public:
     explicit Instance(ApplicationIdentity application)
@@ -44,9 +46,9 @@ public:
     NameRegistry& action_set_names() { return action_set_names_; }
     BindingSuggestions& suggestions() { return suggestions_; }
 
-    // The application asked for the graphics requirements: it may create a session.
-    void note_graphics_requirements() { graphics_requirements_asked_ = true; }
-    bool graphics_requirements_asked() const { return graphics_requirements_asked_; }
+    // The application asked for the API's graphics requirements: it may create a session with it.
+    void note_graphics_requirements(GraphicsApi api) { graphics_requirements_asked_ |= static_cast<unsigned>(api); }
+    bool graphics_requirements_asked(GraphicsApi api) const { return (graphics_requirements_asked_ & static_cast<unsigned>(api)) != 0; }
     // The application's own vkGetInstanceProcAddr (XR_KHR_vulkan_enable2), and the VkInstance made through it; null before. Opaque here.
     std::atomic<void*> vk_get_instance_proc_addr{nullptr};
     std::atomic<void*> vk_instance{nullptr};
@@ -64,7 +66,7 @@ private:
     DebugUtils debug_;
     NameRegistry action_set_names_;
     BindingSuggestions suggestions_;
-    std::atomic<bool> graphics_requirements_asked_{false};
+    std::atomic<unsigned> graphics_requirements_asked_{0};  // bits of GraphicsApi
     std::atomic<bool> session_taken_{false};
 };
 

@@ -22,7 +22,8 @@
     X(xrEnumerateInstanceExtensionProperties)                                                                                              \
     X(xrCreateInstance)                                                                                                                    \
     X(xrDestroyInstance)                                                                                                                   \
-    X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString) X(xrGetSystem) X(xrGetSystemProperties)       \
+    X(xrGetInstanceProperties)                                                                                                             \
+    X(xrPollEvent) X(xrResultToString) X(xrStructureTypeToString) X(xrGetSystem) X(xrGetSystemProperties)                                  \
         X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession) X(xrEnumerateReferenceSpaces) X(xrCreateReferenceSpace) \
             X(xrGetReferenceSpaceBoundsRect) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace) X(xrEnumerateViewConfigurations)    \
                 X(xrGetViewConfigurationProperties) X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats)                    \
@@ -58,12 +59,12 @@ inline const std::vector<const char*>& all_extensions() {
     return names;
 }
 
-// One instance with its fake host.
+// One instance with its fake host, or that of another factory.
 class Client {
 public:
     explicit Client(const std::vector<const char*>& extensions = all_extensions(), const void* chain = nullptr,
-                    XrVersion version = XR_MAKE_VERSION(1, 0, 0))
-        : get_proc(negotiated()) {
+                    XrVersion version = XR_MAKE_VERSION(1, 0, 0), RuntimeHostFactory factory = &FakeHost::make)
+        : get_proc(negotiated(factory)) {
         load();
         XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO, chain};
         std::strcpy(info.applicationInfo.applicationName, "test");

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -118,7 +119,7 @@ public:
     explicit FakeFrameService(Clock& clock) : clock_(clock) {}
 
     std::array<std::uint8_t, 16> device_uuid() const override { return device().device_uuid; }
-    std::array<std::uint8_t, 16> driver_uuid() const override { return device().driver_uuid; }
+    std::array<std::uint8_t, 16> driver_uuid() const override { return told_driver_uuid.value_or(device().driver_uuid); }
     std::vector<std::int64_t> swapchain_formats() const override {
         return {VK_FORMAT_R8G8B8A8_SRGB,
                 VK_FORMAT_B8G8R8A8_SRGB,
@@ -209,6 +210,7 @@ public:
     }
 
     DurationNs period = ns_per_s / 90;
+    std::optional<std::array<std::uint8_t, 16>> told_driver_uuid;  // another driver's: nothing can be shared with it
     std::optional<std::array<float, 2>> adaptation;
     std::vector<PresentationRecord> records;
     SwapchainRequest last_request;

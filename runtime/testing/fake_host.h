@@ -96,6 +96,7 @@ public:
     Headset& headset() override { return headset_; }
     Clock& clock() override { return real_time_ ? static_cast<Clock&>(monotonic_) : virtual_clock; }
     bool lockstep() const override { return !real_time_; }
+    Clock& stopwatch() override { return monotonic_; }
     FrameService& frames() override { return service; }
     LayerLuminance default_luminance() const override { return luminance; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override {
