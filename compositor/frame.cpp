@@ -48,16 +48,6 @@ void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs displ
     input.vergence_dioptre = vergence_dioptre(frame.observer, frame.head_from_eye);
 }
 
-float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye) {
-    const auto& [left, right] = observer.eyes;
-    const float apart_m = head_from_eye[1].position.x - head_from_eye[0].position.x;
-    if (left.gaze_provenance != Provenance::measured || right.gaze_provenance != Provenance::measured || !(apart_m > 0)) return -1;
-    const auto tangent = [](const glm::vec3& gaze) { return gaze.x / -gaze.z; };
-    const float dioptre = (tangent(left.gaze_direction) - tangent(right.gaze_direction)) / apart_m;
-    if (!(left.gaze_direction.z < 0 && right.gaze_direction.z < 0)) return -1;
-    return std::clamp(dioptre, 0.0f, max_dioptre);
-}
-
 // Wall-clock times of the CPU's part of each stage.
 class FramePath::CpuTimes {
 public:

@@ -8,6 +8,7 @@
 #include "interfaces/headset.h"
 #include "interfaces/layers.h"
 #include "interfaces/observer.h"
+#include "interfaces/vergence.h"
 
 #include <array>
 #include <cstdint>
@@ -39,9 +40,6 @@ struct FrameDescription {
 // The predict stage: where head and eyes will be at `display_time`, asked of the headset at `now`. `last_display_time` is the time of the
 // composition before, 0 for none: FrameInput::snap after more than 2 s.
 void predict(FrameDescription& frame, Headset& headset, TimeNs now, TimeNs display_time, TimeNs last_display_time);
-
-// Where both lines of sight meet, 1/m in front of the eyes; 0 where they do not; negative unless both eyes' gaze was measured.
-float vergence_dioptre(const Observer& observer, const std::array<Pose, eye_count>& head_from_eye);
 
 struct FramePathOptions {
     PictureSize panel;     // of one eye, pixels

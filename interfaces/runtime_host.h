@@ -38,6 +38,8 @@ public:
     // A value the command line imposes even on layers that carry XR_ENTOPTICX_scene_luminance is not offered: the layer wins.
     // Size applications are told to render one eye at.
     virtual void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const = 0;
+    // Half a period of the finest grating that an eye adapted to this luminance (cd/m², finite) resolves where it looks, rad.
+    virtual double resolved_angle_rad(double cd_m2) const = 0;
     // A problem the user should know of; goes to the report's `errors` and to the log.
     virtual void report_error(const std::string& message) = 0;
 };

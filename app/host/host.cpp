@@ -4,6 +4,7 @@
 #include "app/display_file.h"
 #include "app/host/display_target.h"
 #include "app/host/eye_size.h"
+#include "app/host/resolution.h"
 #include "app/launch.h"
 #include "app/observer_calibration.h"
 #include "app/observer_file.h"
@@ -182,6 +183,8 @@ void Host::recommended_eye_size(std::uint32_t& width, std::uint32_t& height) con
     width = size.width;
     height = size.height;
 }
+
+double Host::resolved_angle_rad(double cd_m2) const { return app::resolved_angle_rad(cd_m2); }
 
 void Host::report_error(const std::string& message) {
     {

@@ -39,6 +39,7 @@ public:
     FrameService& frames() override { return *watch_; }
     LayerLuminance default_luminance() const override { return facts_.luminance; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override;
+    double resolved_angle_rad(double cd_m2) const override;
     void report_error(const std::string& message) override;
 
     // Writes the report and takes the status away; once, also when the process exits with the instance still open.

@@ -162,6 +162,18 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
     EXPECT_FALSE(fs::exists(path("entoptic/" + std::to_string(getpid()) + ".set")));
 }
 
+TEST_F(HostTest, ResolvesWhatShlaersObserversDid) {
+    configure({});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    const auto arcmin = [&](double cd_m2) { return (*host)->resolved_angle_rad(cd_m2) * 180 / M_PI * 60; };
+    // Shlaer 1937 as Larson 1997 fits it: 49 cycles a degree by day, 12 at 0.1 cd/m2, 2 near the absolute threshold.
+    EXPECT_NEAR(arcmin(1000), 30 / 49.1, 0.01);
+    EXPECT_NEAR(arcmin(0.1), 30 / 11.75, 0.02);
+    EXPECT_GT(arcmin(1e-4), 15);
+    EXPECT_LT(arcmin(0), 301) << "total darkness is finite";
+}
+
 TEST_F(HostTest, RequestsThatAreNoneAreRefused) {
     configure({});
     auto host = open();

@@ -12,12 +12,13 @@ extern "C" {
 #endif
 
 #define XR_ENTOPTICX_observer 1
-#define XR_ENTOPTICX_observer_SPEC_VERSION 1
+#define XR_ENTOPTICX_observer_SPEC_VERSION 2
 #define XR_ENTOPTICX_OBSERVER_EXTENSION_NAME "XR_ENTOPTICX_observer"
 
 /* Structure types. The numbers lie outside of the ranges that Khronos has given to registered extensions. */
 #define XR_TYPE_OBSERVER_GET_INFO_ENTOPTICX ((XrStructureType)1000987010)
 #define XR_TYPE_OBSERVER_ENTOPTICX ((XrStructureType)1000987011)
+#define XR_TYPE_OBSERVER_DETAIL_ENTOPTICX ((XrStructureType)1000987012)  /* since revision 2 */
 
 /* How a value is known. */
 typedef enum XrObserverProvenanceENTOPTICX {
@@ -65,6 +66,15 @@ typedef struct XrObserverENTOPTICX {
     XrVector3f combinedGazeDirection;        /* of both eyes together, unit vector in the base space */
     XrObserverEyeENTOPTICX eyes[2];          /* left, right */
 } XrObserverENTOPTICX;
+
+/* Chained to XrObserverENTOPTICX: which detail the observer can see, so that an application need not draw more. Since revision 2. */
+typedef struct XrObserverDetailENTOPTICX {
+    XrStructureType type;
+    void* XR_MAY_ALIAS next;
+    float resolvedAngle[2];    /* left, right: half a period of the finest grating resolved where the eye looks, rad */
+    float eccentricityFactor;  /* 1/rad: at an angle e (rad) from the gaze it is resolvedAngle * (1 + eccentricityFactor * e) */
+    float focusVergence;       /* 1/m: where the eyes' axes meet, 0 at infinity; negative: not known */
+} XrObserverDetailENTOPTICX;
 
 typedef XrResult(XRAPI_PTR* PFN_xrGetObserverENTOPTICX)(XrSession session, const XrObserverGetInfoENTOPTICX* getInfo,
                                                         XrObserverENTOPTICX* observer);

@@ -1,6 +1,7 @@
 // XR_ENTOPTICX_observer.
 #include "entoptic/XR_ENTOPTICX_observer.h"
 
+#include "interfaces/vergence.h"
 #include "runtime/api/call.h"
 #include "runtime/api/functions.h"
 #include "runtime/api/verify.h"
@@ -27,6 +28,21 @@ XrObserverRawSampleENTOPTICX raw_sample(EyeSource& tracker, int eye, TimeNs now)
     const auto sample = tracker.raw_at(eye, now);
     if (!sample) return {};
     return {XR_TRUE, sample->time, sample->arrival, api::to_xr(sample->gaze_direction), sample->pupil_diameter_mm, sample->confidence};
+}
+
+// The resolved angle doubles at 3.3 degrees (E2; Strasburger, Rentschler and Jüttner 2011).
+constexpr float eccentricity_factor = 57.29578f / 3.3f;
+
+void describe_detail(RuntimeHost& host, const Observer& seen, XrObserverDetailENTOPTICX& out) {
+    const auto& eyes = host.headset().eyes;
+    const auto adaptation = host.frames().adaptation_cd_m2();
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        // Nothing simulated: the wearer's own eye at the panel.
+        const float cd_m2 = adaptation ? (*adaptation)[eye] : host.headset().display.photometry.white_cd_m2;
+        out.resolvedAngle[eye] = static_cast<float>(host.resolved_angle_rad(static_cast<double>(cd_m2)));
+    }
+    out.eccentricityFactor = eccentricity_factor;
+    out.focusVergence = vergence_dioptre(seen, {eyes[0].head_from_eye, eyes[1].head_from_eye});
 }
 
 XrObserverEyeENTOPTICX describe(Session& session, int eye, const EyeState& state, const Pose& base_from_head) {
@@ -68,6 +84,9 @@ XrResult XRAPI_CALL get_observer(XrSession handle, const XrObserverGetInfoENTOPT
         observer->combinedGazeDirection = api::to_xr(base_from_head.rotate(seen.gaze_direction));
         for (int eye = 0; eye < 2; ++eye) {
             observer->eyes[eye] = describe(*session, eye, seen.eyes[static_cast<std::size_t>(eye)], base_from_head);
+        }
+        if (auto* detail = chained<XrObserverDetailENTOPTICX>(observer->next, XR_TYPE_OBSERVER_DETAIL_ENTOPTICX)) {
+            describe_detail(session->host(), seen, *detail);
         }
         return XR_SUCCESS;
     });

@@ -99,6 +99,7 @@ public:
     Clock& stopwatch() override { return monotonic_; }
     FrameService& frames() override { return service; }
     LayerLuminance default_luminance() const override { return luminance; }
+    double resolved_angle_rad(double cd_m2) const override { return 1e-3 / cd_m2; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override {
         width = 256;
         height = 288;

@@ -5,7 +5,7 @@
 namespace samples {
 
 static VkAttachmentDescription2 attachment(VkFormat format, VkSampleCountFlagBits samples, VkAttachmentLoadOp load,
-                                           VkAttachmentStoreOp store, VkImageLayout layout) {
+                                           VkAttachmentStoreOp store, VkImageLayout layout, bool over = false) {
     VkAttachmentDescription2 description{VK_STRUCTURE_TYPE_ATTACHMENT_DESCRIPTION_2};
     description.format = format;
     description.samples = samples;
@@ -13,7 +13,7 @@ static VkAttachmentDescription2 attachment(VkFormat format, VkSampleCountFlagBit
     description.storeOp = store;
     description.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     description.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    description.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    description.initialLayout = over ? layout : VK_IMAGE_LAYOUT_UNDEFINED;  // undefined: what was there may go
     description.finalLayout = layout;
     return description;
 }
@@ -30,12 +30,12 @@ OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
     constexpr auto store = VK_ATTACHMENT_STORE_OP_STORE, drop = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     const bool resolves = format.samples != VK_SAMPLE_COUNT_1_BIT;
     std::vector<VkAttachmentDescription2> attachments;
-    attachments.push_back(attachment(format.colour, VK_SAMPLE_COUNT_1_BIT, resolves ? ignore : clear, store, colour_layout));
+    attachments.push_back(attachment(format.colour, VK_SAMPLE_COUNT_1_BIT, resolves ? ignore : clear, store, colour_layout, format.over));
     const auto kept = reference(0, colour_layout, VK_IMAGE_ASPECT_COLOR_BIT);
     const auto depth = reference(1, depth_layout, VK_IMAGE_ASPECT_DEPTH_BIT);
     if (format.depth) {
-        attachments.push_back(
-            attachment(VK_FORMAT_D32_SFLOAT, format.samples, clear, format.keep_depth && !resolves ? store : drop, depth_layout));
+        attachments.push_back(attachment(VK_FORMAT_D32_SFLOAT, format.samples, clear, format.keep_depth && !resolves ? store : drop,
+                                         depth_layout, format.over && format.keep_depth && !resolves));
     }
     const auto multisample = reference(attachments.size(), colour_layout, VK_IMAGE_ASPECT_COLOR_BIT);
     if (resolves) { attachments.push_back(attachment(format.colour, format.samples, clear, drop, colour_layout)); }
@@ -44,7 +44,7 @@ OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format) {
     depth_resolve.depthResolveMode = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
     depth_resolve.pDepthStencilResolveAttachment = &kept_depth;
     if (resolves && format.keep_depth) {
-        attachments.push_back(attachment(VK_FORMAT_D32_SFLOAT, VK_SAMPLE_COUNT_1_BIT, ignore, store, depth_layout));
+        attachments.push_back(attachment(VK_FORMAT_D32_SFLOAT, VK_SAMPLE_COUNT_1_BIT, ignore, store, depth_layout, format.over));
     }
     VkSubpassDescription2 subpass{VK_STRUCTURE_TYPE_SUBPASS_DESCRIPTION_2};
     subpass.pNext = resolves && format.keep_depth ? &depth_resolve : nullptr;
@@ -136,7 +136,8 @@ void EyePass::wait() const {
     check_vk(vkWaitForFences(gpu_->device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
-void EyePass::draw(std::uint32_t index, std::uint32_t depth, const std::function<void(VkCommandBuffer)>& record) const {
+void EyePass::draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& area,
+                   const std::function<void(VkCommandBuffer)>& record) const {
     wait();
     const VkFence fence = done_.get();
     check_vk(vkResetFences(gpu_->device(), 1, &fence), "vkResetFences");
@@ -150,7 +151,7 @@ void EyePass::draw(std::uint32_t index, std::uint32_t depth, const std::function
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     pass.renderPass = render_pass_;
     pass.framebuffer = framebuffers_.at(format_.keep_depth ? index * depth_views_.size() + depth : index).get();
-    pass.renderArea = {{0, 0}, extent_};
+    pass.renderArea = area;
     pass.clearValueCount = static_cast<std::uint32_t>(clears.size());
     pass.pClearValues = clears.data();
     vkCmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);

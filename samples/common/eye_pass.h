@@ -16,6 +16,7 @@ struct PassFormat {
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     bool depth = false;
     bool keep_depth = false;  // into images that the caller gives, left in DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+    bool over = false;        // draws over a part of a picture: outside of draw()'s area the images stay as an earlier pass left them
 };
 
 OwnedRenderPass create_render_pass(const Gpu& gpu, const PassFormat& format);
@@ -29,9 +30,9 @@ public:
 
     // Waits until the previous picture of this eye is done, so that what `record` reads may be rewritten.
     void wait() const;
-    // Records a render pass over image number `index` and depth image number `depth`, cleared to black and depth 1, and submits it without
-    // waiting.
-    void draw(std::uint32_t index, std::uint32_t depth, const std::function<void(VkCommandBuffer)>& record) const;
+    // Records a render pass over `area` of image number `index` and depth image number `depth`, cleared to black and depth 1, and submits it
+    // without waiting.
+    void draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& area, const std::function<void(VkCommandBuffer)>& record) const;
 
     VkExtent2D extent() const { return extent_; }
 
@@ -44,7 +45,7 @@ private:
     Image depth_;
     std::vector<OwnedImageView> views_, depth_views_;
     std::vector<OwnedFramebuffer> framebuffers_;  // for each image, one for each kept depth image, or one
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;  // freed with the Gpu's command pool
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;   // freed with the Gpu's command pool
     OwnedFence done_;
 };
 

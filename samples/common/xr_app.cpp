@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "include/entoptic/XR_ENTOPTICX_observer.h"
 #include "include/entoptic/XR_ENTOPTICX_scene_luminance.h"
 #include "samples/common/failure.h"
 
@@ -48,7 +49,8 @@ struct XrApp::State {
     XrAppOptions options;
     XrInstance instance = XR_NULL_HANDLE;
     XrSystemId system = XR_NULL_SYSTEM_ID;
-    bool luminance_enabled = false, depth_enabled = false;
+    bool luminance_enabled = false, depth_enabled = false, observer_enabled = false;
+    PFN_xrGetObserverENTOPTICX get_observer = nullptr;
     std::unique_ptr<Gpu> gpu;
     XrSession session = XR_NULL_HANDLE;
     XrSpace local_space = XR_NULL_HANDLE;
@@ -71,7 +73,8 @@ struct XrApp::State {
     void create_swapchains();
     std::vector<std::int64_t> offered_formats() const;
     VkFormat choose_format() const;
-    std::vector<VkImage> create_swapchain(XrSwapchainCreateInfo& info, VkFormat format, XrSwapchainUsageFlags usage, XrSwapchain& handle) const;
+    std::vector<VkImage> create_swapchain(XrSwapchainCreateInfo& info, VkFormat format, XrSwapchainUsageFlags usage,
+                                          XrSwapchain& handle) const;
     std::uint32_t acquire(XrSwapchain swapchain) const;
     void create_actions();
     void suggest(const char* profile, const std::vector<std::pair<XrAction, const char*>>& bindings) const;
@@ -82,7 +85,8 @@ struct XrApp::State {
     void request_session_end();
     void run_frame(Scene& scene);
     bool locate_views(XrTime time, std::vector<XrView>& views) const;
-    void draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views,
+    void ask_observer(XrTime time, std::vector<EyeView>& views) const;
+    void draw_views(Scene& scene, XrTime time, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views,
                     std::vector<XrCompositionLayerDepthInfoKHR>& depths);
 };
 
@@ -128,6 +132,8 @@ void XrApp::State::create_instance() {
     if (luminance_enabled) { enabled.push_back(XR_ENTOPTICX_SCENE_LUMINANCE_EXTENSION_NAME); }
     depth_enabled = options.far_m > 0 && has_extension(offered, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     if (depth_enabled) { enabled.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
+    observer_enabled = options.gaze && has_extension(offered, XR_ENTOPTICX_OBSERVER_EXTENSION_NAME);
+    if (observer_enabled) { enabled.push_back(XR_ENTOPTICX_OBSERVER_EXTENSION_NAME); }
     XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO};
     options.application.copy(info.applicationInfo.applicationName, XR_MAX_APPLICATION_NAME_SIZE - 1);
     info.applicationInfo.applicationVersion = 1;
@@ -140,6 +146,25 @@ void XrApp::State::create_instance() {
         throw Failure(ExitCode::missing, fmt::format("the OpenXR runtime does not start ({}): see its own messages above, or "
                                                      "`entoptic doctor`",
                                                      result_name(XR_NULL_HANDLE, result)));
+    }
+}
+
+// Where each eye looks at `time` and what it resolves there, into views that know where they are.
+void XrApp::State::ask_observer(XrTime time, std::vector<EyeView>& views) const {
+    if (!observer_enabled || views.size() != 2) { return; }
+    const XrObserverGetInfoENTOPTICX info{XR_TYPE_OBSERVER_GET_INFO_ENTOPTICX, nullptr, local_space, time};
+    XrObserverDetailENTOPTICX detail{XR_TYPE_OBSERVER_DETAIL_ENTOPTICX, nullptr, {}, 0, 0};
+    XrObserverENTOPTICX observer{XR_TYPE_OBSERVER_ENTOPTICX};
+    observer.next = &detail;
+    check(get_observer(session, &info, &observer), "xrGetObserverENTOPTICX");
+    constexpr XrSpaceLocationFlags needed = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+    if ((observer.headLocationFlags & needed) != needed) { return; }
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        const XrObserverEyeENTOPTICX& seen = observer.eyes[eye];
+        if (seen.gazeProvenance == XR_OBSERVER_PROVENANCE_ABSENT_ENTOPTICX) { continue; }
+        const XrVector3f& d = seen.gazeDirection;
+        views[eye].seen = {glm::inverse(views[eye].orientation) * glm::vec3(d.x, d.y, d.z), detail.resolvedAngle[eye],
+                           detail.eccentricityFactor};
     }
 }
 
@@ -229,6 +254,7 @@ void XrApp::State::create_session() {
     space.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
     space.poseInReferenceSpace.orientation.w = 1.0F;
     check(xrCreateReferenceSpace(session, &space, &local_space), "xrCreateReferenceSpace");
+    if (observer_enabled) { get_observer = load<PFN_xrGetObserverENTOPTICX>(instance, "xrGetObserverENTOPTICX"); }
 }
 
 std::vector<std::int64_t> XrApp::State::offered_formats() const {
@@ -456,13 +482,17 @@ std::uint32_t XrApp::State::acquire(XrSwapchain swapchain) const {
     return image;
 }
 
-void XrApp::State::draw_views(Scene& scene, const std::vector<XrView>& views, std::vector<XrCompositionLayerProjectionView>& layer_views,
+void XrApp::State::draw_views(Scene& scene, XrTime time, const std::vector<XrView>& views,
+                              std::vector<XrCompositionLayerProjectionView>& layer_views,
                               std::vector<XrCompositionLayerDepthInfoKHR>& depths) {
     depths.resize(swapchains.size());  // the layer's views point to them
+    std::vector<EyeView> eye_views;
+    for (const XrView& view : views) { eye_views.push_back(eye_view_of(view)); }
+    ask_observer(time, eye_views);
     for (std::uint32_t eye = 0; eye < swapchains.size(); ++eye) {
         const Swapchain& swapchain = swapchains[eye];
         const std::uint32_t image = acquire(swapchain.handle), depth = depth_enabled ? acquire(swapchain.depth) : 0;
-        scene.draw(eye, image, depth, eye_view_of(views[eye]));
+        scene.draw(eye, image, depth, eye_views[eye]);
         check(xrReleaseSwapchainImage(swapchain.handle, nullptr), "xrReleaseSwapchainImage");
 
         XrCompositionLayerProjectionView& layer_view = layer_views.emplace_back();
@@ -498,7 +528,7 @@ void XrApp::State::run_frame(Scene& scene) {
     std::vector<XrCompositionLayerProjectionView> layer_views;
     std::vector<XrCompositionLayerDepthInfoKHR> depths;
     if (frame.shouldRender && locate_views(frame.predictedDisplayTime, views)) {
-        draw_views(scene, views, layer_views, depths);
+        draw_views(scene, frame.predictedDisplayTime, views, layer_views, depths);
         ++frames_drawn;
     }
     XrCompositionLayerSceneLuminanceENTOPTICX luminance{XR_TYPE_COMPOSITION_LAYER_SCENE_LUMINANCE_ENTOPTICX, nullptr,

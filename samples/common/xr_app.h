@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,20 @@
 
 namespace samples {
 
+// Which detail an eye can see (XR_ENTOPTICX_observer).
+struct SeenDetail {
+    glm::vec3 gaze{0, 0, -1};       // unit vector in the eye's own axes: x right, y up, -z ahead
+    float resolved_angle = 0;       // finest detail that the eye resolves where it looks, rad
+    float eccentricity_factor = 0;  // 1/rad: that grows to resolved_angle * (1 + this * angle from the gaze)
+};
+
 // Where an eye is and what it sees: position in metres in LOCAL space (origin at the initial head, looking along -z, y up),
 // field of view as tangents of its four angles (left and down negative).
 struct EyeView {
     glm::vec3 position{0};
     glm::quat orientation{1, 0, 0, 0};
     float tan_left = -1, tan_right = 1, tan_up = 1, tan_down = -1;
+    std::optional<SeenDetail> seen;  // XrAppOptions::gaze, and the runtime knows where the eye looks
 };
 
 // The images of one eye that the sample draws into.
@@ -60,11 +69,12 @@ struct XrAppOptions {
     std::string application;        // XrApplicationInfo::applicationName
     std::vector<VkFormat> formats;  // linear float swapchain formats that will do, the best first
     bool scene_luminance = true;    // use XR_ENTOPTICX_scene_luminance where the runtime has it
+    bool gaze = false;              // ask XR_ENTOPTICX_observer, where the runtime has it, for EyeView::seen
     bool controllers = false;       // make an action set for ControllerInput
     // Planes of the depth buffer, m (0 near, 1 far): submit it with XR_KHR_composition_layer_depth where the runtime has that. 0: no depth.
     float near_m = 0, far_m = 0;
-    std::uint64_t frames = 0;       // ask for the end after so many frames drawn; 0: no limit
-    double seconds = 0;             // ask for the end at this predicted display time since the first frame; 0: no limit
+    std::uint64_t frames = 0;  // ask for the end after so many frames drawn; 0: no limit
+    double seconds = 0;        // ask for the end at this predicted display time since the first frame; 0: no limit
 };
 
 class XrApp {

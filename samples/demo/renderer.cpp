@@ -106,17 +106,50 @@ glm::mat4 clip_from_world(const EyeView& view) {
     return clip * glm::inverse(world_from_eye);
 }
 
+VkRect2D finely_seen(const EyeView& view, VkExtent2D extent) {
+    constexpr float margin = 3.0F * std::numbers::pi_v<float> / 180;  // choice: 1 degree of error, and a small saccade that is under way
+    const VkRect2D all{{0, 0}, extent};
+    if (!view.seen) { return all; }
+    const float width = view.tan_right - view.tan_left, height = view.tan_up - view.tan_down;
+    // Pixels are finest in angle at the rim of a flat picture; ahead they are largest, and there they would be seen first.
+    const float pixel = std::max(width / static_cast<float>(extent.width), height / static_cast<float>(extent.height));
+    const float radius = (pixel / view.seen->resolved_angle - 1) / view.seen->eccentricity_factor;
+    if (!(radius > 0)) { return {}; }
+    const float cone = std::min(radius + margin, 1.0F);
+    // The cone about the gaze, by points on its rim; one that leaves the half space ahead takes everything.
+    const glm::vec3 gaze = glm::normalize(view.seen->gaze);
+    const glm::vec3 side = glm::normalize(glm::cross(gaze, std::abs(gaze.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
+    const glm::vec3 up = glm::cross(side, gaze);
+    glm::vec2 low(1e9F), high(-1e9F);
+    constexpr int points = 32;
+    for (int i = 0; i < points; ++i) {
+        const float turn = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / points;
+        const glm::vec3 d = gaze * std::cos(cone) + (side * std::cos(turn) + up * std::sin(turn)) * std::sin(cone);
+        if (!(d.z < -0.05F)) { return all; }
+        const glm::vec2 at((d.x / -d.z - view.tan_left) / width * static_cast<float>(extent.width),
+                           (view.tan_up - d.y / -d.z) / height * static_cast<float>(extent.height));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    const glm::vec2 end(extent.width, extent.height);
+    low = glm::clamp(glm::floor(low) - 1.0F, glm::vec2(0), end);
+    high = glm::clamp(glm::ceil(high) + 1.0F, glm::vec2(0), end);
+    return {{static_cast<std::int32_t>(low.x), static_cast<std::int32_t>(low.y)},
+            {static_cast<std::uint32_t>(high.x - low.x), static_cast<std::uint32_t>(high.y - low.y)}};
+}
+
 OfficeRenderer::OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
-                               VkSampleCountFlagBits samples, double lamp_peak_cd_m2, bool keep_depth)
-    : gpu_(gpu), pass_format_{format, samples, true, keep_depth}, lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
+                               Sampling samples, double lamp_peak_cd_m2, bool keep_depth)
+    : gpu_(gpu), lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
     for (const glm::vec4& lux : lightmap.texels) { largest_illuminance_ = glm::max(largest_illuminance_, lux); }
     for (const Patch& patch : office.patches) {
         brightest_star_ = patch.emitter == Emitter::stars ? std::max(brightest_star_, patch.emission) : brightest_star_;
     }
-    render_pass_ = create_render_pass(gpu, pass_format_);
     upload_mesh(office, lightmap);
     upload_textures(materials, lightmap);
-    create_pipelines();
+    create_layout();
+    style_ = create_style({format, samples == Sampling::four ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT, true, keep_depth, false});
+    if (samples == Sampling::gaze) { fine_style_ = create_style({format, VK_SAMPLE_COUNT_4_BIT, true, keep_depth, true}); }
 }
 
 void OfficeRenderer::upload_mesh(const Office& office, const Lightmap& lightmap) {
@@ -170,10 +203,16 @@ void OfficeRenderer::upload_textures(const std::vector<Canvas>& materials, const
     }
 }
 
-void OfficeRenderer::create_pipelines() {
+void OfficeRenderer::create_layout() {
     const std::array sets{view_layout_.get(), material_layout_.get()};
     const std::array constants{VkPushConstantRange{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(EmissionConstants)}};
     pipeline_layout_ = create_pipeline_layout(gpu_, sets, constants);
+}
+
+OfficeRenderer::Style OfficeRenderer::create_style(const PassFormat& pass) const {
+    Style style;
+    style.format = pass;
+    style.render_pass = create_render_pass(gpu_, pass);
     const std::array<VkVertexInputAttributeDescription, 4> attributes{{
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
         {1, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texture_at)},
@@ -184,19 +223,20 @@ void OfficeRenderer::create_pipelines() {
     description.vertex_spirv = office_vert_spv;
     description.fragment_spirv = surface_frag_spv;
     description.layout = pipeline_layout_.get();
-    description.render_pass = render_pass_.get();
-    description.samples = pass_format_.samples;
+    description.render_pass = style.render_pass.get();
+    description.samples = pass.samples;
     description.vertex_stride = sizeof(Vertex);
     description.attributes = attributes;
     description.depth_test = true;
     description.depth_write = true;
     description.cull_back_faces = true;
-    surface_ = create_pipeline(gpu_, description);
+    style.surface = create_pipeline(gpu_, description);
     description.fragment_spirv = emitter_frag_spv;
-    emitter_ = create_pipeline(gpu_, description);
+    style.emitter = create_pipeline(gpu_, description);
     description.blend = Blend::add;
     description.depth_write = false;
-    added_emitter_ = create_pipeline(gpu_, description);
+    style.added_emitter = create_pipeline(gpu_, description);
+    return style;
 }
 
 void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& images, const std::vector<VkImage>& depth_images) {
@@ -204,7 +244,11 @@ void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& imag
     const VkDescriptorSet set = allocate_set(gpu_, pool_.get(), view_layout_.get());
     write_uniform_buffer(gpu_, set, 0, uniforms.buffer.get(), 0, sizeof(ViewUniforms));
     write_image(gpu_, set, 1, lightmap_.view.get(), clamp_.get());
-    eyes_.push_back({EyePass(gpu_, pass_format_, render_pass_.get(), extent, images, depth_images), std::move(uniforms), set});
+    const auto pass = [&](const Style& style) {
+        return EyePass(gpu_, style.format, style.render_pass.get(), extent, images, depth_images);
+    };
+    eyes_.push_back({pass(style_), std::nullopt, std::move(uniforms), set});
+    if (fine_style_) { eyes_.back().fine.emplace(pass(*fine_style_)); }
 }
 
 void OfficeRenderer::set_light(const Light& light, float unit_cd_m2) {
@@ -249,9 +293,12 @@ double OfficeRenderer::brightest(const Light& light) const {
     return std::max(bound, reflected);
 }
 
+static double pixel_count(VkExtent2D extent) { return static_cast<double>(extent.width) * static_cast<double>(extent.height); }
+
 void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
     const Eye& eye = eyes_.at(index);
     eye.pass.wait();  // before its uniforms change
+    if (eye.fine) { eye.fine->wait(); }
     ViewUniforms uniforms{};
     uniforms.clip_from_world = clip_from_world(view);
     const auto colours = channel_colours(light_, lamp_peak_cd_m2_);
@@ -260,10 +307,19 @@ void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_
     }
     uniforms.eye = glm::vec4(view.position, 1);
     std::memcpy(eye.uniforms.mapped, &uniforms, sizeof(uniforms));
-    eye.pass.draw(image, depth, [&](VkCommandBuffer commands) { record(commands, eye); });
+    const VkExtent2D extent = eye.pass.extent();
+    eye.pass.draw(image, depth, {{0, 0}, extent}, [&](VkCommandBuffer commands) { record(commands, style_, eye); });
+    const double pixels = pixel_count(extent);
+    pixels_ += pixels;
+    if (style_.format.samples == VK_SAMPLE_COUNT_4_BIT) { fine_pixels_ += pixels; }
+    if (!eye.fine) { return; }
+    const VkRect2D area = finely_seen(view, extent);
+    if (area.extent.width == 0 || area.extent.height == 0) { return; }
+    fine_pixels_ += pixel_count(area.extent);
+    eye.fine->draw(image, depth, area, [&](VkCommandBuffer commands) { record(commands, *fine_style_, eye); });
 }
 
-void OfficeRenderer::record(VkCommandBuffer commands, const Eye& eye) const {
+void OfficeRenderer::record(VkCommandBuffer commands, const Style& style, const Eye& eye) const {
     const VkBuffer vertex_buffer = vertices_.buffer.get();
     const VkDeviceSize offset = 0;
     vkCmdBindVertexBuffers(commands, 0, 1, &vertex_buffer, &offset);
@@ -271,9 +327,9 @@ void OfficeRenderer::record(VkCommandBuffer commands, const Eye& eye) const {
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_layout_.get(), 0, 1, &eye.set, 0, nullptr);
     VkPipeline bound = VK_NULL_HANDLE;
     for (const Batch& batch : batches_) {
-        const VkPipeline pipeline = batch.emitter == Emitter::none ? surface_.get()
-                                    : is_added(batch.emitter)      ? added_emitter_.get()
-                                                                   : emitter_.get();
+        const VkPipeline pipeline = batch.emitter == Emitter::none ? style.surface.get()
+                                    : is_added(batch.emitter)      ? style.added_emitter.get()
+                                                                   : style.emitter.get();
         if (pipeline != bound) {
             vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
             bound = pipeline;
@@ -292,7 +348,10 @@ void OfficeRenderer::record(VkCommandBuffer commands, const Eye& eye) const {
 }
 
 void OfficeRenderer::wait() const {
-    for (const Eye& eye : eyes_) { eye.pass.wait(); }
+    for (const Eye& eye : eyes_) {
+        eye.pass.wait();
+        if (eye.fine) { eye.fine->wait(); }
+    }
 }
 
 }  // namespace samples

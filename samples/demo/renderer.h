@@ -1,6 +1,7 @@
 // Draws the office into fp16 images of any origin: a swapchain's or our own.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "samples/common/eye_pass.h"
@@ -11,6 +12,8 @@
 
 namespace samples {
 
+enum class Sampling { one, four, gaze };  // samples a pixel; gaze: four where the eye could see one pixel from the next, else one
+
 class OfficeRenderer {
 public:
     static constexpr VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
@@ -18,9 +21,9 @@ public:
     // Planes of the depth buffer, m.
     static constexpr float near_plane = 0.05F, far_plane = 200.0F;
 
-    // `samples`: 1 or 4 a pixel. `keep_depth`: into the depth images given to add_eye(). `lamp_peak_cd_m2`: the bulb's luminance when it is fully on.
-    OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
-                   VkSampleCountFlagBits samples, double lamp_peak_cd_m2, bool keep_depth);
+    // `samples`: how many a pixel, and where. `keep_depth`: into the depth images given to add_eye(). `lamp_peak_cd_m2`: the bulb's luminance when it is fully on.
+    OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap, Sampling samples,
+                   double lamp_peak_cd_m2, bool keep_depth);
     OfficeRenderer(const OfficeRenderer&) = delete;
     OfficeRenderer& operator=(const OfficeRenderer&) = delete;
 
@@ -35,6 +38,8 @@ public:
     // Submits the picture of an eye; returns before it is done.
     void draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, const EyeView& view);
     void wait() const;
+    // Share of all pixels drawn so far that had four samples.
+    double finely_sampled_share() const { return pixels_ > 0 ? fine_pixels_ / pixels_ : 0; }
 
 private:
     struct Batch {  // patches of one material, or of one emitter
@@ -42,26 +47,33 @@ private:
         Material material;
         std::uint32_t first_index, index_count;
     };
+    // Pipelines for a number of samples.
+    struct Style {
+        PassFormat format;
+        OwnedRenderPass render_pass;
+        OwnedPipeline surface, emitter, added_emitter;
+    };
     struct Eye {
         EyePass pass;
+        std::optional<EyePass> fine;  // over the part where four samples can be seen
         Buffer uniforms;
         VkDescriptorSet set;
     };
     void upload_mesh(const Office& office, const Lightmap& lightmap);
     void upload_textures(const std::vector<Canvas>& materials, const Lightmap& lightmap);
-    void create_pipelines();
-    void record(VkCommandBuffer commands, const Eye& eye) const;
+    void create_layout();
+    Style create_style(const PassFormat& format) const;
+    void record(VkCommandBuffer commands, const Style& style, const Eye& eye) const;
     glm::vec3 emitted(Emitter emitter, const Light& light) const;
 
     const Gpu& gpu_;
-    PassFormat pass_format_;
     double lamp_peak_cd_m2_;
     glm::vec3 bulb_centre_;
     float brightest_star_ = 0;
     glm::vec4 largest_illuminance_{0};  // of each lightmap channel
     Light light_;
     float unit_ = 1;
-    OwnedRenderPass render_pass_;
+    double pixels_ = 0, fine_pixels_ = 0;
     Buffer vertices_, indices_;
     std::vector<Batch> batches_;
     Image lightmap_;
@@ -71,9 +83,14 @@ private:
     OwnedDescriptorPool pool_;
     std::vector<VkDescriptorSet> material_sets_;
     OwnedPipelineLayout pipeline_layout_;
-    OwnedPipeline surface_, emitter_, added_emitter_;
+    Style style_;
+    std::optional<Style> fine_style_;
     std::vector<Eye> eyes_;
 };
+
+// The part of a picture of `extent` in which the eye resolves the angle of a pixel, with a margin for errors of the tracker and for its latency;
+// empty when it does so nowhere, all of it when nobody knows where the eye looks.
+VkRect2D finely_seen(const EyeView& view, VkExtent2D extent);
 
 // Clip space of Vulkan (y down, depth 0 … 1) from the world, for an asymmetric field of view.
 glm::mat4 clip_from_world(const EyeView& view);
