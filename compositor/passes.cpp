@@ -52,7 +52,7 @@ struct SeenPush {
 
 template <class T> Result<gpu::Buffer> upload_list(const gpu::Device& device, const std::vector<T>& list, const std::string& name) {
     ENTOPTIC_TRY(buffer, gpu::Buffer::create(device, std::max<std::size_t>(list.size(), 1) * sizeof(T), gpu::BufferKind::upload, name));
-    std::memcpy(buffer.bytes().data(), list.data(), list.size() * sizeof(T));
+    std::copy(list.begin(), list.end(), buffer.template as<T>().begin());  // memcpy may not be given an empty list
     return buffer;
 }
 
