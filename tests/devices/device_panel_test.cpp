@@ -3,15 +3,12 @@
 #include "compositor/targets/kms/lease.h"
 #include "compositor/targets/kms/scanout.h"
 #include "compositor/testing/frame_harness.h"
-#include "drivers/display/edid.h"
+#include "tests/devices/panel_on_kernel.h"
 
 #include <cmath>
 #include <csignal>
-#include <drm_fourcc.h>
-#include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <xf86drm.h>
@@ -25,23 +22,11 @@ using namespace compositor::kms;
 using compositor::testing::must;
 using compositor::testing::test_device;
 
-constexpr const char* card_node = "/dev/dri/card0";
 constexpr const char* connector_status = "/sys/class/drm/card0-DP-1/status";
 constexpr PictureSize eye_size{1440, 1600};
 constexpr double period_ns = 1e9 * (2880 + 80) * (1600 + 24) / 432'830'000.0;  // vive_panel_edid.py's pixel clock, in steps of 10 kHz
 
 MonotonicClock the_clock;
-
-PanelWish wish() {
-    PanelWish w;
-    w.refresh_hz = 90.04;
-    w.headset_of_edid = [](std::span<const std::uint8_t> bytes) -> std::string {
-        const auto edid = drivers::parse_edid(bytes);
-        const char* headset = edid ? drivers::headset_of_edid(*edid) : nullptr;
-        return headset ? headset : "";
-    };
-    return w;
-}
 
 // One frame at the panel's full size, another colour in each corner.
 struct Picture {
@@ -74,31 +59,6 @@ Result<PresentFeedback> show(DisplayTarget& target) {
     return target.wait_shown();
 }
 
-// What the card scans out now, by the kernel's own account: the framebuffer of the lit CRTC, mapped through another descriptor.
-std::vector<std::uint32_t> scanned_out(int fd) {
-    std::vector<std::uint32_t> pixels;
-    drmModeRes* resources = drmModeGetResources(fd);
-    for (int i = 0; resources && i < resources->count_crtcs; ++i) {
-        drmModeCrtc* crtc = drmModeGetCrtc(fd, resources->crtcs[i]);
-        drmModeFB* buffer = crtc && crtc->buffer_id ? drmModeGetFB(fd, crtc->buffer_id) : nullptr;
-        std::uint64_t offset = 0;
-        if (buffer && drmModeMapDumbBuffer(fd, buffer->handle, &offset) == 0) {
-            const std::size_t size = std::size_t(buffer->pitch) * buffer->height;
-            void* mapped = mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, static_cast<off_t>(offset));
-            for (std::uint32_t y = 0; mapped != MAP_FAILED && y < buffer->height; ++y) {
-                const auto* row =
-                    reinterpret_cast<const std::uint32_t*>(static_cast<const std::byte*>(mapped) + std::size_t(y) * buffer->pitch);
-                pixels.insert(pixels.end(), row, row + buffer->width);
-            }
-            if (mapped != MAP_FAILED) munmap(mapped, size);
-        }
-        drmModeFreeFB(buffer);
-        drmModeFreeCrtc(crtc);
-    }
-    drmModeFreeResources(resources);
-    return pixels;
-}
-
 void set_connector(const char* status) {
     std::ofstream out(connector_status);
     out << status;
@@ -107,7 +67,7 @@ void set_connector(const char* status) {
 }
 
 TEST(PanelOnTheKernel, IsFoundByItsEdidAndTheKernelsOwnMark) {
-    const auto held = hold_card(wish());
+    const auto held = hold_card(panel_wish());
     ASSERT_TRUE(held) << held.error().message;
     EXPECT_EQ(held->choice.headset, "HTC Vive Pro");
     EXPECT_EQ(held->choice.connector.name, "DP-1");
@@ -119,7 +79,7 @@ TEST(PanelOnTheKernel, IsFoundByItsEdidAndTheKernelsOwnMark) {
 
 TEST(PanelOnTheKernel, EachPictureIsShownAtTheNextRefreshForTenSeconds) {
     PanelOptions options;
-    options.wish = wish();
+    options.wish = panel_wish();
     options.hold = hold_card;
     auto target = make_panel_target(test_device(), the_clock, options);
     ASSERT_TRUE(target) << target.error().message;
@@ -144,7 +104,7 @@ TEST(PanelOnTheKernel, EachPictureIsShownAtTheNextRefreshForTenSeconds) {
 
 TEST(PanelOnTheKernel, EveryPixelThatIsScannedOutIsTheFramesCode) {
     PanelOptions options;
-    options.wish = wish();
+    options.wish = panel_wish();
     options.hold = hold_card;
     auto target = must(make_panel_target(test_device(), the_clock, options));
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(show(*target));
@@ -169,7 +129,7 @@ TEST(PanelOnTheKernel, EveryPixelThatIsScannedOutIsTheFramesCode) {
 
 TEST(PanelOnTheKernel, UnpluggedInMidSessionAndBack) {
     PanelOptions options;
-    options.wish = wish();
+    options.wish = panel_wish();
     options.hold = hold_card;
     auto target = must(make_panel_target(test_device(), the_clock, options));
     for (int i = 0; i < 5; ++i) ASSERT_TRUE(show(*target));
@@ -208,53 +168,27 @@ TEST(PanelOnTheKernel, AnotherProcessThatHoldsTheCardIsNamedAsTheReason) {
     char told = 0;
     ASSERT_EQ(read(ready[0], &told, 1), 1);
     EXPECT_EQ(told, 'm');
-    const auto held = hold_card(wish());
+    const auto held = hold_card(panel_wish());
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     ASSERT_FALSE(held);
     EXPECT_EQ(held.error().kind, ErrorKind::failed);
     EXPECT_NE(held.error().message.find("another program, most likely a display server, holds"), std::string::npos) << held.error().message;
-    EXPECT_TRUE(hold_card(wish()));  // and after it, all is well
+    EXPECT_TRUE(hold_card(panel_wish()));  // and after it, all is well
 }
-
-// A display server's part: it is the card's master, and leases connector, CRTC and plane.
-class Lessor {
-public:
-    Lessor() : fd_(open(card_node, O_RDWR | O_CLOEXEC)) {
-        drmSetClientCap(fd_, DRM_CLIENT_CAP_UNIVERSAL_PLANES, 1);
-        drmModeRes* resources = drmModeGetResources(fd_);
-        drmModePlaneRes* planes = drmModeGetPlaneResources(fd_);
-        if (resources && planes && resources->count_connectors && resources->count_crtcs && planes->count_planes)
-            objects_ = {resources->connectors[0], resources->crtcs[0], planes->planes[0]};
-        drmModeFreePlaneResources(planes);
-        drmModeFreeResources(resources);
-    }
-    ~Lessor() { close(fd_); }
-    Result<HeldPanel> lease(const PanelWish& w) {
-        const int fd = drmModeCreateLease(fd_, objects_.data(), static_cast<int>(objects_.size()), O_CLOEXEC, &id_);
-        if (fd < 0) return failure("no lease");
-        ENTOPTIC_TRY(card, card_of(fd, "a lease"));
-        std::vector<Connector> connectors;
-        (void)card->connectors(true, connectors);
-        ENTOPTIC_TRY(choice, choose_panel(connectors, w));
-        return HeldPanel{std::move(card), std::move(choice)};
-    }
-    void revoke() { drmModeRevokeLease(fd_, id_); }
-
-private:
-    int fd_;
-    std::uint32_t id_ = 0;
-    std::vector<std::uint32_t> objects_;
-};
 
 TEST(PanelOnTheKernel, ALeaseIsTakenBackInMidSessionAndGivenAgain) {
     Lessor server;
     bool gives = true;
     PanelOptions options;
-    options.wish = wish();
+    options.wish = panel_wish();
     options.hold = [&](const PanelWish& w) -> Result<HeldPanel> {
-        if (gives) return server.lease(w);
-        return failure("not now");
+        if (!gives) return failure("not now");
+        ENTOPTIC_TRY(card, card_of(server.lease(), "a lease"));
+        std::vector<Connector> connectors;
+        (void)card->connectors(true, connectors);
+        ENTOPTIC_TRY(choice, choose_panel(connectors, w));
+        return HeldPanel{std::move(card), std::move(choice)};
     };
     auto target = make_panel_target(test_device(), the_clock, options);
     ASSERT_TRUE(target) << target.error().message;

@@ -65,7 +65,7 @@ Result<HeldPanel> hold_panel(const PanelWish& wish) {
         if (held.error().kind != ErrorKind::missing) kind = held.error().kind;
         tried.push_back(fmt::format("{}: {}", way.name, held.error().message));
     }
-    return tl::make_unexpected(Error{kind, fmt::format("No panel of a headset could be taken. {}", fmt::join(tried, " "))});
+    return tl::make_unexpected(Error{kind, fmt::format("No panel of a headset could be taken. {}", fmt::join(tried, "; "))});
 }
 
 }  // namespace entoptic::compositor::kms

@@ -1,0 +1,164 @@
+// labels: device
+// Whole sessions on emulated hardware: hello_xr under `entoptic run`, the headset on the kernel's USB, its panel on the kernel's display code.
+// Runs on tests/devices/run_um.sh --edid; ENTOPTIC_COMMAND is the command's path.
+#include "base/image_io.h"
+#include "compositor/targets/kms/testing/wayland_lessor.h"
+#include "drivers/vive_pro/vive_pro_connection.h"
+#include "tests/devices/emulated_vive.h"
+#include "tests/devices/panel_on_kernel.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <thread>
+
+namespace entoptic::devices {
+namespace {
+
+namespace fs = std::filesystem;
+
+MonotonicClock the_clock;
+
+// One run in a folder of its own.
+class SessionRun {
+public:
+    SessionRun(const std::string& options, int frames) {
+        const char* command = std::getenv("ENTOPTIC_COMMAND");
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        call_ = fmt::format("exec {} run --frames {} --report {}/report.json {} -- hello_xr -g Vulkan2 >{}/output 2>&1",
+                            command ? command : "entoptic", frames, folder_.string(), options, folder_.string());
+        process_ = fork();
+        if (process_ == 0) {
+            int ends[2];  // hello_xr ends when its standard input does
+            if (pipe(ends) == 0) dup2(ends[0], 0);
+            execl("/bin/sh", "sh", "-c", call_.c_str(), nullptr);
+            _exit(127);
+        }
+    }
+    // The exit code; -1 when it did not end in time.
+    int wait(double seconds) {
+        int state = 0;
+        for (int i = 0; i < seconds * 10; ++i) {
+            if (waitpid(process_, &state, WNOHANG) == process_) return WIFEXITED(state) ? WEXITSTATUS(state) : -2;
+            the_clock.sleep_until(the_clock.now() + ns_per_s / 10);
+        }
+        kill(process_, SIGTERM);
+        waitpid(process_, &state, 0);
+        return -1;
+    }
+    std::string text(const char* name) const {
+        std::ifstream in(folder_ / name);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    nlohmann::json report() const { return nlohmann::json::parse(text("report.json"), nullptr, false); }
+    // Displayed frames so far, as `entoptic status` has them.
+    const fs::path& folder() const { return folder_; }
+
+private:
+    fs::path folder_ = fs::temp_directory_path() / fmt::format("entoptic-session-{}", getpid());
+    std::string call_;
+    pid_t process_ = -1;
+};
+
+template <class Condition> bool within(double seconds, Condition condition) {
+    for (int i = 0; i < seconds * 20; ++i) {
+        if (condition()) return true;
+        the_clock.sleep_until(the_clock.now() + ns_per_s / 20);
+    }
+    return condition();
+}
+
+bool plug_in(EmulatedVive& vive) {
+    return bool(vive.plug()) && within(10, [] {
+               const auto found = drivers::vive_pro::find_headsets(drivers::system_hid_bus());
+               return found.size() == 1 && !found[0].light.path.empty() && !found[0].mainboard.path.empty();
+           });
+}
+
+// The dumped frame whose codes are exactly what was scanned out; "" for none.
+std::string dumped_frame(const fs::path& dumps, const std::vector<std::uint32_t>& pixels) {
+    for (const auto& entry : fs::directory_iterator(dumps)) {
+        const std::string name = entry.path().filename().string();
+        const auto at = name.find("_left_panel.png");
+        if (at == std::string::npos) continue;
+        bool same = true;
+        for (int eye = 0; eye < 2 && same; ++eye) {
+            const auto image = read_png((dumps / (name.substr(0, at) + (eye ? "_right_panel.png" : "_left_panel.png"))).string());
+            if (!image) return image.error().message;
+            for (int y = 0; y < 1600 && same; ++y)
+                for (int x = 0; x < 1440 && same; ++x) {
+                    const std::uint32_t code =
+                        std::uint32_t(image->at(x, y, 0)) << 16 | std::uint32_t(image->at(x, y, 1)) << 8 | image->at(x, y, 2);
+                    same = (pixels[std::size_t(y) * 2880 + std::size_t(eye * 1440 + x)] & 0xffffffu) == code;
+                }
+        }
+        if (same) return name.substr(0, at);
+    }
+    return "";
+}
+
+TEST(Session, HelloXrOnTheViveProsPanelAtItsOwnRate) {
+    EmulatedVive vive;
+    ASSERT_TRUE(plug_in(vive));
+    constexpr int frames = 20;
+    SessionRun run("--hmd vive-pro --target kms --preset off --eye-scale 0.5 --dump " +
+                       (fs::temp_directory_path() / "entoptic-dumps").string() + " --dump-stages panel",
+                   frames);
+    const int fd = open("/dev/dri/card0", O_RDWR | O_CLOEXEC | O_NONBLOCK);  // may become master before it: given up at once
+    drmDropMaster(fd);
+    ASSERT_TRUE(within(120, [&] { return is_lit(fd); })) << run.text("output");
+    the_clock.sleep_until(the_clock.now() + ns_per_s / 10);
+    const auto pixels = scanned_out(fd);
+    EXPECT_EQ(run.wait(120), 0) << run.text("output");
+    close(fd);
+    const auto report = run.report();
+    ASSERT_TRUE(report.is_object()) << run.text("output");
+    std::printf("%s\nframes %s\n", report["target"].get<std::string>().c_str(), report["frames"].dump().c_str());
+    EXPECT_EQ(report["target"].get<std::string>().find("HTC Vive Pro on DP-1 of /dev/dri/card0 (vkms), 2880x1600 at 90.04 Hz"), 0u);
+    EXPECT_EQ(report["errors"].dump(), "[]");
+    EXPECT_GE(report["frames"]["displayed"].get<int>(), frames);
+    EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
+    EXPECT_EQ(report["frames"]["unseen"].get<int>(), 0);
+    ASSERT_EQ(pixels.size(), std::size_t(2880) * 1600);
+    const std::string frame = dumped_frame(fs::temp_directory_path() / "entoptic-dumps", pixels);
+    std::printf("scanned out: frame %s\n", frame.c_str());
+    EXPECT_NE(frame, "");
+}
+
+// On a small panel and with the virtual headset: what counts here is who holds the panel.
+TEST(Session, GoesOnWhenTheWaylandCompositorTakesItsLeaseBackAndGivesItAgain) {
+    Lessor card;
+    std::atomic<bool> gives{true};
+    compositor::kms::testing::WaylandLessor::Behaviour behaviour;
+    behaviour.connector = card.connector();
+    behaviour.reader = [] { return open(card_node, O_RDWR | O_CLOEXEC); };  // not the master: that is `card`
+    behaviour.lease = [&] { return gives ? card.lease() : -1; };
+    compositor::kms::testing::WaylandLessor server(behaviour);
+    SessionRun run("--hmd virtual --panel 320x360 --target kms --preset off", 100);
+    ASSERT_TRUE(within(60, [&] { return server.leases() == 1; })) << run.text("output");
+    the_clock.sleep_until(the_clock.now() + ns_per_s / 2);
+    gives = false;
+    card.revoke();
+    the_clock.sleep_until(the_clock.now() + ns_per_s);
+    gives = true;
+    EXPECT_EQ(run.wait(200), 0) << run.text("output");
+    const auto report = run.report();
+    ASSERT_TRUE(report.is_object()) << run.text("output");
+    std::printf("%s\nframes %s\nerrors %s\n", report["target"].get<std::string>().c_str(), report["frames"].dump().c_str(),
+                report["errors"].dump().c_str());
+    EXPECT_NE(report["target"].get<std::string>().find("a lease of the Wayland compositor"), std::string::npos);
+    EXPECT_GE(report["frames"]["displayed"].get<int>(), 100);
+    EXPECT_GT(report["frames"]["unseen"].get<int>(), 50);
+    EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
+    EXPECT_NE(report["errors"].dump().find("taken back by the display server"), std::string::npos);
+    EXPECT_EQ(server.leases(), 0);
+}
+
+}  // namespace
+}  // namespace entoptic::devices
