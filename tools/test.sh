@@ -14,16 +14,12 @@ esac
 tools/install-dependencies.sh
 
 status=0
-# run_tests <preset> [ctest options]: stdout ends with ctest's own summary.
+# run_tests <build folder> <test preset>: stdout ends with ctest's own summary.
 run_tests() {
-    preset=$1
-    shift
-    say "Testing preset $preset"
-    ctest --preset "$preset" --no-tests=error --parallel "${ENTOPTIC_TEST_JOBS:-2}" "$@" </dev/null || status=1
+    say "Testing preset $2"
+    ctest --preset "$2" --no-tests=error --parallel "${ENTOPTIC_TEST_JOBS:-2}" </dev/null || status=1
     # A test that skips itself has tested nothing.
-    binaries=build/$preset
-    [ "$preset" = slow ] && binaries=build/dev
-    skipped=$(grep -F '[  SKIPPED ]' "$binaries/Testing/Temporary/LastTest.log" 2>/dev/null | sort -u || true)
+    skipped=$(grep -F '[  SKIPPED ]' "build/$1/Testing/Temporary/LastTest.log" 2>/dev/null | sort -u || true)
     if [ -n "$skipped" ]; then
         echo "$skipped"
         say "These tests skipped themselves, which counts as failing"
@@ -31,16 +27,14 @@ run_tests() {
     fi
 }
 
-if [ $long = yes ]; then
-    for preset in asan validation; do
-        build "$preset"
-        run_tests "$preset"
-    done
-    build dev
-    run_tests slow
-fi
 build ci
-run_tests ci
+if [ $long = yes ]; then
+    build asan
+    run_tests asan asan
+    run_tests ci validation
+    run_tests ci slow
+fi
+run_tests ci ci
 
 if [ $status -eq 0 ]; then say "All tests passed"; else say "Some tests failed"; fi
 exit $status
