@@ -160,5 +160,58 @@ TEST(Session, GoesOnWhenTheWaylandCompositorTakesItsLeaseBackAndGivesItAgain) {
     EXPECT_EQ(server.leases(), 0);
 }
 
+// Debian's Xorg with its modesetting driver, of a seat without a terminal. Its one output is the headset's, which it lights for want of others.
+class XServer {
+public:
+    XServer() {
+        {
+            std::ofstream conf(folder_ + ".conf");
+            conf << "Section \"ServerFlags\"\nOption \"AutoAddDevices\" \"false\"\nOption \"AutoAddGPU\" \"false\"\nEndSection\n"
+                    "Section \"Device\"\nIdentifier \"card\"\nDriver \"modesetting\"\nOption \"kmsdev\" \""
+                 << card_node
+                 << "\"\nOption \"AccelMethod\" \"none\"\nEndSection\n"
+                    "Section \"Screen\"\nIdentifier \"screen\"\nDevice \"card\"\nEndSection\n";
+        }
+        process_ = fork();
+        if (process_ == 0) {
+            const std::string conf = folder_ + ".conf", log = folder_ + ".log";
+            if (!freopen((folder_ + ".err").c_str(), "w", stderr)) _exit(126);
+            execl("/usr/lib/xorg/Xorg", "Xorg", ":7", "-seat", "seat-1", "-config", conf.c_str(), "-logfile", log.c_str(), "-noreset",
+                  "-ac", "-nolisten", "tcp", nullptr);
+            _exit(127);
+        }
+        setenv("DISPLAY", ":7", 1);
+    }
+    ~XServer() {
+        kill(process_, SIGTERM);
+        waitpid(process_, nullptr, 0);
+        unsetenv("DISPLAY");
+    }
+    static bool run(const char* command) { return std::system(command) == 0; }
+
+private:
+    std::string folder_ = (fs::temp_directory_path() / fmt::format("entoptic-xorg-{}", getpid())).string();
+    pid_t process_ = -1;
+};
+
+TEST(Session, OnAPanelThatTheXServerLeases) {
+    const XServer server;
+    ASSERT_TRUE(within(20, [] { return XServer::run("xrandr >/dev/null 2>&1"); }))
+        << "no X server, or no xrandr: apt-get install xserver-xorg-core x11-xserver-utils";
+    const std::string options = "--hmd virtual --panel 320x360 --target kms --preset off";
+    SessionRun used(options, 30);
+    EXPECT_EQ(used.wait(60), 125);
+    EXPECT_NE(used.text("output").find("Take it away: xrandr --output DP-1 --off"), std::string::npos) << used.text("output");
+    ASSERT_TRUE(XServer::run("xrandr --output DP-1 --off"));  // as that message says
+    SessionRun run(options, 60);
+    EXPECT_EQ(run.wait(100), 0) << run.text("output");
+    const auto report = run.report();
+    ASSERT_TRUE(report.is_object()) << run.text("output");
+    std::printf("%s\nframes %s\n", report["target"].get<std::string>().c_str(), report["frames"].dump().c_str());
+    EXPECT_NE(report["target"].get<std::string>().find("a lease of the X server"), std::string::npos);
+    EXPECT_GE(report["frames"]["displayed"].get<int>(), 60);
+    EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
+}
+
 }  // namespace
 }  // namespace entoptic::devices

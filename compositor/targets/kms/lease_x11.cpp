@@ -141,7 +141,7 @@ Result<HeldPanel> lease_from_x11(const PanelWish& wish) {
     const Output* best = nullptr;
     bool best_known = false;
     for (const Output& output : outputs) {
-        if (!output.connector.connected) continue;
+        // Outputs that are no desktop's are told as disconnected, so that desktops leave them alone. An EDID is there with a display only.
         const bool known = !output.connector.edid.empty() && !wish.headset_of_edid(output.connector.edid).empty();
         if ((known && !best_known) || (output.connector.non_desktop && !best)) {
             best = &output;
