@@ -63,6 +63,7 @@ Result<HeldPanel> hold_panel(const PanelWish& wish) {
         auto held = way.hold(wish);
         if (held) return held;
         if (held.error().kind != ErrorKind::missing) kind = held.error().kind;
+        if (!tried.empty() && tried.back().ends_with(held.error().message)) continue;  // the same panel's, another way
         tried.push_back(fmt::format("{}: {}", way.name, held.error().message));
     }
     return tl::make_unexpected(Error{kind, fmt::format("No panel of a headset could be taken. {}", fmt::join(tried, "; "))});
