@@ -12,7 +12,7 @@ libopenxr-dev libopenxr-loader1 libopenxr-utils openxr-layer-corevalidation open
 libopenexr-dev libpng-dev libturbojpeg0-dev libusb-1.0-0-dev libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libexpected-dev
 libfftw3-dev libgtest-dev libbenchmark-dev
 libxcb1-dev libxcb-randr0-dev libdrm-dev libudev-dev libwayland-dev wayland-protocols xvfb xauth
-libgl-dev libopengl-dev libegl-dev libx11-dev libglx-mesa0 libegl-mesa0 libgl1-mesa-dri
+libgl-dev libopengl-dev libegl-dev libx11-dev libxcb-glx0-dev libglx-mesa0 libegl-mesa0 libgl1-mesa-dri
 libhidapi-dev libceres-dev zlib1g-dev
 python3 ca-certificates
 "

@@ -41,6 +41,9 @@ private:
 
 // From the chain of XrSessionCreateInfo: XrGraphicsBindingOpenGLXlibKHR. XR_ERROR_GRAPHICS_DEVICE_INVALID.
 Outcome make_glx_context(const void* binding, std::unique_ptr<OpenGlContext>& context);
+// XrGraphicsBindingOpenGLXcbKHR. Its identifiers are the X server's, and only Xlib's GLX makes contexts current: the session's context is the
+// one that is current now. XR_ERROR_GRAPHICS_DEVICE_INVALID when there is none of that connection.
+Outcome make_xcb_context(const void* binding, std::unique_ptr<OpenGlContext>& context);
 // XrGraphicsBindingEGLMNDX (XR_MNDX_egl_enable). XR_ERROR_GRAPHICS_DEVICE_INVALID.
 Outcome make_egl_context(const void* binding, std::unique_ptr<OpenGlContext>& context);
 

@@ -6,7 +6,7 @@
 namespace entoptic::runtime::graphics {
 
 std::span<const FunctionEntry> opengl_functions();
-// Xlib's or EGL's.
+// Xlib's, Xcb's or EGL's.
 bool has_opengl_binding(const void* chain);
 Outcome make_opengl_device(Instance& instance, const void* chain, std::unique_ptr<GraphicsDevice>& device);
 

@@ -1,10 +1,12 @@
-// GLX through Xlib. The libraries are those that the application has loaded: an application of another graphics API never gets them.
+// GLX, for windows of Xlib and of Xcb. The libraries are those that the application has loaded: an application of another graphics API never gets them.
 // Xlib's macros (None, Bool, Success ...) end with this file.
 #include <X11/Xlib.h>
 #include <GL/glx.h>
 #include <dlfcn.h>
+#include <xcb/glx.h>
 
 #define XR_USE_PLATFORM_XLIB
+#define XR_USE_PLATFORM_XCB
 #include "runtime/graphics/opengl_openxr.h"
 
 #include "runtime/graphics/opengl_context.h"
@@ -23,6 +25,7 @@ struct GlxFunctions {
     decltype(&::glXMakeContextCurrent) MakeContextCurrent = nullptr;
     decltype(&::glXGetProcAddressARB) GetProcAddressARB = nullptr;
     decltype(&::XSetErrorHandler) XSetErrorHandler = nullptr;
+    xcb_connection_t* (*XGetXCBConnection)(Display*) = nullptr;  // of libX11-xcb; null: no windows of Xcb
 
     bool load() {
         void* gl = dlopen("libGL.so.1", RTLD_NOW | RTLD_LOCAL);
@@ -41,6 +44,8 @@ struct GlxFunctions {
         one(gl, MakeContextCurrent, "glXMakeContextCurrent");
         one(gl, GetProcAddressARB, "glXGetProcAddressARB");
         one(x11, XSetErrorHandler, "XSetErrorHandler");
+        if (void* x11_xcb = dlopen("libX11-xcb.so.1", RTLD_NOW | RTLD_LOCAL))
+            XGetXCBConnection = reinterpret_cast<decltype(XGetXCBConnection)>(dlsym(x11_xcb, "XGetXCBConnection"));
         return complete;
     }
 };
@@ -75,8 +80,8 @@ private:
 
 class GlxContext final : public OpenGlContext {
 public:
-    GlxContext(const GlxFunctions& glx, const XrGraphicsBindingOpenGLXlibKHR& binding)
-        : glx_(glx), display_(binding.xDisplay), drawable_(binding.glxDrawable), context_(binding.glxContext) {}
+    GlxContext(const GlxFunctions& glx, Display* display, GLXDrawable drawable, GLXContext context)
+        : glx_(glx), display_(display), drawable_(drawable), context_(context) {}
 
     std::function<void()> make_current() override {
         const GLXContext before = glx_.GetCurrentContext();
@@ -103,6 +108,11 @@ private:
     const GLXContext context_;
 };
 
+Outcome no_libraries() {
+    return error(XR_ERROR_GRAPHICS_DEVICE_INVALID,
+                 "libGL.so.1, libX11.so.6 or libX11-xcb.so.1 cannot be loaded; install libgl1, libx11-6 and libx11-xcb1");
+}
+
 }  // namespace
 
 Outcome make_glx_context(const void* chained, std::unique_ptr<OpenGlContext>& context) {
@@ -110,8 +120,23 @@ Outcome make_glx_context(const void* chained, std::unique_ptr<OpenGlContext>& co
     if (!binding.xDisplay || !binding.glxContext)
         return error(XR_ERROR_GRAPHICS_DEVICE_INVALID, "the OpenGL binding holds no {}", binding.xDisplay ? "glxContext" : "xDisplay");
     const GlxFunctions* glx = glx_functions();
-    if (!glx) return error(XR_ERROR_GRAPHICS_DEVICE_INVALID, "libGL.so.1 or libX11.so.6 cannot be loaded; install libgl1 and libx11-6");
-    context = std::make_unique<GlxContext>(*glx, binding);
+    if (!glx) return no_libraries();
+    context = std::make_unique<GlxContext>(*glx, binding.xDisplay, binding.glxDrawable, binding.glxContext);
+    return XR_SUCCESS;
+}
+
+Outcome make_xcb_context(const void* chained, std::unique_ptr<OpenGlContext>& context) {
+    const auto& binding = *static_cast<const XrGraphicsBindingOpenGLXcbKHR*>(chained);
+    const GlxFunctions* glx = glx_functions();
+    if (!glx || !glx->XGetXCBConnection) return no_libraries();
+    const GLXContext current = glx->GetCurrentContext();
+    // Qt 6.8 leaves the connection out.
+    const bool same = current && (!binding.connection || glx->XGetXCBConnection(glx->GetCurrentDisplay()) == binding.connection);
+    if (!same) {
+        return error(XR_ERROR_GRAPHICS_DEVICE_INVALID,
+                     "with XrGraphicsBindingOpenGLXcbKHR a GLX context of its connection must be current on the thread of xrCreateSession");
+    }
+    context = std::make_unique<GlxContext>(*glx, glx->GetCurrentDisplay(), glx->GetCurrentDrawable(), current);
     return XR_SUCCESS;
 }
 

@@ -10,6 +10,8 @@
 #include <GL/glext.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <dlfcn.h>
+#include <xcb/glx.h>
 #undef None
 #undef Bool
 #undef Status
@@ -22,6 +24,7 @@
 
 #define XR_USE_GRAPHICS_API_VULKAN
 #define XR_USE_PLATFORM_XLIB
+#define XR_USE_PLATFORM_XCB
 #define XR_USE_PLATFORM_EGL
 #include "runtime/graphics/opengl_openxr.h"
 
@@ -61,6 +64,16 @@ public:
         binding.glxFBConfig = config;
         binding.glxDrawable = drawable;
         binding.glxContext = context;
+        return binding;
+    }
+
+    XrGraphicsBindingOpenGLXcbKHR xcb_binding() const {
+        void* library = dlopen("libX11-xcb.so.1", RTLD_NOW);
+        const auto connection_of =
+            reinterpret_cast<xcb_connection_t* (*)(Display*)>(library ? dlsym(library, "XGetXCBConnection") : nullptr);
+        XrGraphicsBindingOpenGLXcbKHR binding{XR_TYPE_GRAPHICS_BINDING_OPENGL_XCB_KHR};
+        binding.connection = connection_of ? connection_of(display) : nullptr;
+        binding.glxDrawable = static_cast<xcb_glx_drawable_t>(drawable);
         return binding;
     }
 

@@ -140,6 +140,31 @@ TEST_F(OpenGl, SessionsThatCannotBe) {
     EXPECT_EQ(without.get<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR"), nullptr);
 }
 
+TEST_F(OpenGl, AWindowOfXcbComesWithTheContextThatIsCurrent) {
+    EXPECT_EQ(ask_requirements(xr), XR_SUCCESS);
+    auto binding = application->xcb_binding();
+    ASSERT_NE(binding.connection, nullptr) << "install the package libx11-xcb1";
+    EXPECT_EQ(create_session(xr, &binding, &session), XR_ERROR_GRAPHICS_DEVICE_INVALID) << "none is current";
+    GlxApplication other(display_name());
+    ASSERT_TRUE(other.bind());
+    EXPECT_EQ(create_session(xr, &binding, &session), XR_ERROR_GRAPHICS_DEVICE_INVALID) << "of another connection";
+    binding.connection = nullptr;  // as Qt has it
+    application->unbind();
+    other.unbind();
+    EXPECT_EQ(create_session(xr, &binding, &session), XR_ERROR_GRAPHICS_DEVICE_INVALID);
+    ASSERT_TRUE(application->bind());
+    ASSERT_EQ(create_session(xr, &binding, &session), XR_SUCCESS);
+    EXPECT_EQ(xr.xrDestroySession(session), XR_SUCCESS);
+    binding = application->xcb_binding();
+    ASSERT_EQ(create_session(xr, &binding, &session), XR_SUCCESS);
+    application->unbind();
+    const XrSwapchain swapchain = make_swapchain(info());
+    std::uint32_t index = 0;
+    EXPECT_EQ(acquire_and_wait(swapchain, index), XR_SUCCESS);
+    EXPECT_EQ(xr.xrReleaseSwapchainImage(swapchain, nullptr), XR_SUCCESS);
+    EXPECT_EQ(glXGetCurrentContext(), nullptr);
+}
+
 TEST_F(OpenGl, Requirements) {
     const auto get = xr.get<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR");
     XrGraphicsRequirementsOpenGLKHR requirements{XR_TYPE_UNKNOWN};
