@@ -166,7 +166,7 @@ TEST(SweepDecoder, RandomPulsesDoNoHarm) {
     for (int i = 0; i < 200'000; ++i) {
         const std::uint64_t r = mix64(++n);
         decoder.add({static_cast<std::uint8_t>(r & 31), static_cast<std::uint16_t>(r >> 8),
-                     static_cast<std::uint32_t>(i * 300 + static_cast<int>((r >> 32) % (i % 1000 == 0 ? 4'000'000'000u : 5000u)))});
+                     static_cast<std::uint32_t>(static_cast<std::uint64_t>(i) * 300 + (r >> 32) % (i % 1000 == 0 ? 4'000'000'000u : 5000u))});
     }
     for (const Hit& hit : decoder.take_hits()) EXPECT_LT(std::abs(hit.angle), 1.6);
 }

@@ -4,6 +4,7 @@
 #include "base/time.h"
 #include "drivers/v4l2_camera/video_system.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -122,7 +123,7 @@ private:
             const std::uint32_t index = open.free.front();
             open.free.pop_front();
             auto& memory = open.memory[index];
-            std::memcpy(memory.data(), picture->bytes.data(), std::min(memory.size(), picture->bytes.size()));
+            std::copy_n(picture->bytes.begin(), std::min(memory.size(), picture->bytes.size()), memory.begin());
             open.filled.emplace_back(index, std::move(*picture));
         }
     }
