@@ -35,6 +35,7 @@ public:
     void draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& area, const std::function<void(VkCommandBuffer)>& record) const;
 
     VkExtent2D extent() const { return extent_; }
+    VkRect2D whole() const { return {{0, 0}, extent_}; }
 
 private:
     const Gpu* gpu_;

@@ -308,7 +308,7 @@ void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_
     uniforms.eye = glm::vec4(view.position, 1);
     std::memcpy(eye.uniforms.mapped, &uniforms, sizeof(uniforms));
     const VkExtent2D extent = eye.pass.extent();
-    eye.pass.draw(image, depth, {{0, 0}, extent}, [&](VkCommandBuffer commands) { record(commands, style_, eye); });
+    eye.pass.draw(image, depth, eye.pass.whole(), [&](VkCommandBuffer commands) { record(commands, style_, eye); });
     const double pixels = pixel_count(extent);
     pixels_ += pixels;
     if (style_.format.samples == VK_SAMPLE_COUNT_4_BIT) { fine_pixels_ += pixels; }

@@ -102,7 +102,8 @@ void Viewer::draw(std::uint32_t eye, std::uint32_t image, std::uint32_t depth, c
                                   {q.x, q.y, q.z, q.w},
                                   {half_width, half_width * aspect_},
                                   options_.projection == Projection::flat ? 1U : 0U};
-    eyes_.at(eye).draw(image, depth, [&](VkCommandBuffer commands) {
+    const EyePass& pass = eyes_.at(eye);
+    pass.draw(image, depth, pass.whole(), [&](VkCommandBuffer commands) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
         vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(constants), &constants);
