@@ -2,9 +2,9 @@
 // Asking display servers for a panel that they do not have, or do not give. A lease that is given: tests/devices/device_panel_test.cpp.
 #include "compositor/targets/kms/lease.h"
 
+#include "base/testing/x_server.h"
 #include "compositor/targets/kms/testing/fake_card.h"
 #include "compositor/targets/kms/testing/wayland_lessor.h"
-#include "compositor/testing/virtual_server.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(X11Lease, NoServer) {
 }
 
 TEST(X11Lease, AServerWithoutAHeadset) {
-    const compositor::testing::VirtualServer server;
+    const entoptic::testing::VirtualServer server;
     ASSERT_FALSE(server.display().empty()) << "install the package xvfb";
     setenv("DISPLAY", server.display().c_str(), 1);
     EXPECT_NE(refusal(lease_from_x11(wish()), ErrorKind::missing).find("knows no headset's panel"), std::string::npos);
