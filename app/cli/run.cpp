@@ -136,7 +136,14 @@ Result<void> check_outputs(const Options& o) {
 // With the configuration underneath: it must be good, too, as its errors would come out in the middle of the application's.
 Result<void> check_against_config(const Options& o) {
     ENTOPTIC_TRY(base, load_config(std::nullopt));
-    if (o.hmd.value_or(base.hmd.value) == "vive-pro") {
+    const std::string hmd = o.hmd.value_or(base.hmd.value), script = o.script.value_or(base.script.value);
+    if (hmd == "replay") {
+        if (script == Config{}.script.value) return usage_error("A replay needs its recording: --script FILE (entoptic record makes one).");
+        ENTOPTIC_CHECK(drivers::RecordingReader::open(script));
+    } else if (o.script) {
+        ENTOPTIC_CHECK(drivers::load_script(script));
+    }
+    if (hmd == "vive-pro") {
         if (o.clock.value_or(base.clock.value) == "lockstep")
             return usage_error("A real headset runs in real time. Use --clock real, or --hmd virtual.");
         if (drivers::vive_pro::find_headsets(drivers::system_hid_bus()).empty())
@@ -164,12 +171,6 @@ Result<void> check(const Options& o) {
         if (!size || std::min(size->first, size->second) < 16 || std::max(size->first, size->second) > 8192)
             return usage_error(
                 fmt::format("--panel {}: write WIDTHxHEIGHT of one eye, each from 16 to 8192, such as 1440x1600.", *o.panel));
-    }
-    if (o.hmd == "replay") {
-        if (!o.script) return usage_error("A replay needs its recording: --script FILE (entoptic record makes one).");
-        ENTOPTIC_CHECK(drivers::RecordingReader::open(*o.script));
-    } else if (o.script) {
-        ENTOPTIC_CHECK(drivers::load_script(*o.script));
     }
     return check_outputs(o);
 }
