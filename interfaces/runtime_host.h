@@ -7,6 +7,7 @@
 #include "interfaces/headset.h"
 #include "interfaces/layers.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -38,8 +39,9 @@ public:
     // A value the command line imposes even on layers that carry XR_ENTOPTICX_scene_luminance is not offered: the layer wins.
     // Size applications are told to render one eye at.
     virtual void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const = 0;
-    // Half a period of the finest grating that an eye adapted to this luminance (cd/m², finite) resolves where it looks, rad.
-    virtual double resolved_angle_rad(double cd_m2) const = 0;
+    // Half a period of the finest grating that is seen where the left and the right eye look, rad: by the eye in the scene when its acuity is
+    // simulated, else by the wearer's own at the panel. Thread-safe.
+    virtual std::array<double, 2> resolved_angles_rad() const = 0;
     // A problem the user should know of; goes to the report's `errors` and to the log.
     virtual void report_error(const std::string& message) = 0;
 };

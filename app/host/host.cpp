@@ -121,6 +121,7 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
     ENTOPTIC_TRY(selection, select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value,
                                            perception::Viewer::wearer));
     facts_.selection = selection;
+    acuity_simulated_ = selection.find("acuity") != nullptr;
     if (lockstep())
         clock_ = std::make_unique<VirtualClock>();
     else
@@ -184,7 +185,14 @@ void Host::recommended_eye_size(std::uint32_t& width, std::uint32_t& height) con
     height = size.height;
 }
 
-double Host::resolved_angle_rad(double cd_m2) const { return app::resolved_angle_rad(cd_m2); }
+std::array<double, 2> Host::resolved_angles_rad() const {
+    const auto adaptation = frames_->adaptation_cd_m2();
+    const bool scene = acuity_simulated_ && adaptation;
+    std::array<double, 2> angles{};
+    for (std::size_t eye = 0; eye < 2; ++eye)
+        angles[eye] = resolved_angle_rad(static_cast<double>(scene ? (*adaptation)[eye] : headset_.display.photometry.white_cd_m2));
+    return angles;
+}
 
 void Host::report_error(const std::string& message) {
     {
@@ -247,6 +255,7 @@ Result<void> Host::apply(const SettingsRequest& request) {
     ENTOPTIC_TRY(selection,
                  select_effects(all.preset, all.models, all.settings, facts_.config.observer.value, perception::Viewer::wearer));
     facts_.selection = selection;
+    acuity_simulated_ = selection.find("acuity") != nullptr;
     facts_.adjusted.choice = std::move(live);
     frames_->select(std::move(selection));
     return {};

@@ -7,6 +7,8 @@
 #include "compositor/service.h"
 #include "interfaces/runtime_host.h"
 
+#include <array>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -39,7 +41,7 @@ public:
     FrameService& frames() override { return *watch_; }
     LayerLuminance default_luminance() const override { return facts_.luminance; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override;
-    double resolved_angle_rad(double cd_m2) const override;
+    std::array<double, 2> resolved_angles_rad() const override;
     void report_error(const std::string& message) override;
 
     // Writes the report and takes the status away; once, also when the process exits with the instance still open.
@@ -74,6 +76,7 @@ private:
     std::condition_variable stop_publishing_;
     std::vector<std::string> errors_;  // of the runtime; the compositor keeps its own
     bool finished_ = false;
+    std::atomic<bool> acuity_simulated_ = false;  // of facts_.selection, for the application's threads
     std::thread publisher_;
 };
 

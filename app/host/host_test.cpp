@@ -1,6 +1,7 @@
 // labels: gpu
 // The services behind an instance, without OpenXR: what the configuration asks for happens, and is told.
 #include "app/host/host.h"
+#include "app/host/resolution.h"
 
 #include "app/launch.h"
 
@@ -162,16 +163,27 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
     EXPECT_FALSE(fs::exists(path("entoptic/" + std::to_string(getpid()) + ".set")));
 }
 
-TEST_F(HostTest, ResolvesWhatShlaersObserversDid) {
-    configure({});
-    auto host = open();
-    ASSERT_TRUE(host) << host.error().message;
-    const auto arcmin = [&](double cd_m2) { return (*host)->resolved_angle_rad(cd_m2) * 180 / M_PI * 60; };
+TEST(Resolution, IsThatOfShlaersObservers) {
+    const auto arcmin = [](double cd_m2) { return resolved_angle_rad(cd_m2) * 180 / M_PI * 60; };
     // Shlaer 1937 as Larson 1997 fits it: 49 cycles a degree by day, 12 at 0.1 cd/m2, 2 near the absolute threshold.
     EXPECT_NEAR(arcmin(1000), 30 / 49.1, 0.01);
     EXPECT_NEAR(arcmin(0.1), 30 / 11.75, 0.02);
     EXPECT_GT(arcmin(1e-4), 15);
     EXPECT_LT(arcmin(0), 301) << "total darkness is finite";
+}
+
+// A scene's eye sees less in the dark only if it is simulated: else the wearer's own looks at what the panel shows.
+TEST_F(HostTest, DetailIsTheSceneEyesWhereItsAcuityIsSimulated) {
+    for (const bool simulated : {false, true}) {
+        configure({{"preset", "\"luidolt2020\""}, {"luminance", "0.001"}, {"models", simulated ? "{}" : "{acuity = \"none\"}"}});
+        auto host = open();
+        ASSERT_TRUE(host) << host.error().message;
+        show(**host, 3);
+        const auto adaptation = (*host)->frames().adaptation_cd_m2();
+        ASSERT_TRUE(adaptation);
+        const double cd_m2 = simulated ? static_cast<double>((*adaptation)[0]) : 130;
+        EXPECT_NEAR((*host)->resolved_angles_rad()[0] / resolved_angle_rad(cd_m2), 1, 1e-6) << simulated;
+    }
 }
 
 TEST_F(HostTest, RequestsThatAreNoneAreRefused) {

@@ -35,12 +35,8 @@ constexpr float eccentricity_factor = 57.29578f / 3.3f;
 
 void describe_detail(RuntimeHost& host, const Observer& seen, XrObserverDetailENTOPTICX& out) {
     const auto& eyes = host.headset().eyes;
-    const auto adaptation = host.frames().adaptation_cd_m2();
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-        // Nothing simulated: the wearer's own eye at the panel.
-        const float cd_m2 = adaptation ? (*adaptation)[eye] : host.headset().display.photometry.white_cd_m2;
-        out.resolvedAngle[eye] = static_cast<float>(host.resolved_angle_rad(static_cast<double>(cd_m2)));
-    }
+    const std::array<double, 2> angles = host.resolved_angles_rad();
+    for (std::size_t eye = 0; eye < 2; ++eye) out.resolvedAngle[eye] = static_cast<float>(angles[eye]);
     out.eccentricityFactor = eccentricity_factor;
     out.focusVergence = vergence_dioptre(seen, {eyes[0].head_from_eye, eyes[1].head_from_eye});
 }

@@ -99,7 +99,7 @@ public:
     Clock& stopwatch() override { return monotonic_; }
     FrameService& frames() override { return service; }
     LayerLuminance default_luminance() const override { return luminance; }
-    double resolved_angle_rad(double cd_m2) const override { return 1e-3 / cd_m2; }
+    std::array<double, 2> resolved_angles_rad() const override { return {0.5e-3, 0.25e-3}; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override {
         width = 256;
         height = 288;
