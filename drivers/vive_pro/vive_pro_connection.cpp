@@ -131,6 +131,25 @@ Result<Connection> connect(HidBus& bus, const Functions& functions) {
     return out;
 }
 
+bool complete(HidBus& bus, Connection& connection) {
+    if (connection.light && connection.mainboard) return false;
+    bool more = false;
+    const auto add = [&](std::unique_ptr<HidDevice>& device, HidInfo& known, const HidInfo& info) {
+        if (device || info.path.empty()) return;
+        auto opened = bus.open(info);
+        if (!opened) return log::debug("{}", opened.error().message);
+        device = std::move(*opened);
+        known = info;
+        more = true;
+    };
+    for (const Functions& now : find_headsets(bus)) {
+        if (now.imu.path != connection.functions.imu.path) continue;
+        add(connection.light, connection.functions.light, now.light);
+        add(connection.mainboard, connection.functions.mainboard, now.mainboard);
+    }
+    return more;
+}
+
 Result<void> switch_on(Connection& connection) {
     if (connection.mainboard) {
         const auto on = display_power(true);

@@ -30,6 +30,10 @@ struct Connection {
 // several tries, or says that it is no headset.
 Result<Connection> connect(HidBus& bus, const Functions& functions);
 
+// Opens light receiver and mainboard of a connection that lacks them, where they have come since: the functions of a headset that is plugged
+// in come one after the other. True when there is more than before.
+bool complete(HidBus& bus, Connection& connection);
+
 // Downloads and unpacks the configuration, once.
 Result<std::string> download_configuration(HidDevice& device);
 

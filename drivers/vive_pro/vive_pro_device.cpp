@@ -21,6 +21,7 @@ constexpr int kept_by_kernel = 64;                      // HIDRAW_BUFFER_SIZE
 constexpr DurationNs frozen_after = 500'000'000;   // 500 samples are missing
 constexpr DurationNs reopen_after = 3 * ns_per_s;  // a device that froze is opened anew
 constexpr DurationNs look_again_every = 500'000'000;
+constexpr DurationNs complete_every = ns_per_s;  // look for functions that were not there when it was opened
 
 }  // namespace
 
@@ -67,22 +68,31 @@ void Device::supervise() {
 }
 
 void Device::run_connection() {
-    if (const auto on = switch_on(connection_); !on)
-        log::warn("The light receiver was not switched on, so there is no position: {}", on.error().message);
     reading_ = true;
     {
         const std::lock_guard lock(mutex_);
         if (stop_) reading_ = false;
     }
     const TimeNs begun = clock_.now();
-    std::vector<std::thread> readers;
-    const auto read = [&](const std::unique_ptr<HidDevice>& device, Source source) {
-        if (device) readers.emplace_back([this, &device, source] { read_loop(*device, source); });
+    std::array<std::thread, 3> readers;
+    const auto read = [&](HidDevice* device, Source source) {
+        std::thread& reader = readers[static_cast<std::size_t>(source)];
+        if (device && !reader.joinable()) reader = std::thread([this, device, source] { read_loop(*device, source); });
     };
-    read(connection_.imu, Source::imu);
-    read(connection_.light, Source::light);
-    read(connection_.mainboard, Source::mainboard);
+    const auto begin = [&] {
+        if (const auto on = switch_on(connection_); !on)
+            log::warn("The light receiver was not switched on, so there is no position: {}", on.error().message);
+        read(connection_.imu.get(), Source::imu);
+        read(connection_.light.get(), Source::light);
+        read(connection_.mainboard.get(), Source::mainboard);
+    };
+    begin();
+    TimeNs look_at = begun + complete_every;
     while (reading_ && wait(100'000'000)) {
+        if (clock_.now() >= look_at) {
+            if (complete(bus_, connection_)) begin();
+            look_at = clock_.now() + complete_every;
+        }
         const TimeNs silent = clock_.now() - std::max(begun, tracker_.statistics().newest_sample);
         if (silent > frozen_after)
             lost("it sends no motion samples any more", silent > reopen_after);
@@ -90,7 +100,8 @@ void Device::run_connection() {
             found();
     }
     reading_ = false;
-    for (std::thread& reader : readers) reader.join();
+    for (std::thread& reader : readers)
+        if (reader.joinable()) reader.join();
 }
 
 void Device::read_loop(HidDevice& device, Source source) {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <mutex>
 
 namespace entoptic::drivers::vive_pro {
 namespace {
@@ -362,6 +363,7 @@ public:
     explicit FakeBus(ViveModel& m) : model(m) {}
     ViveModel& model;
     std::atomic<bool> plugged = true;
+    std::mutex mutex;  // of devices
     std::vector<HidInfo> devices{{"/dev/hidraw0", vendor_valve, 0x2101, 0, "dongle", "1-1.3"},
                                  {"/dev/hidraw1", vendor_valve, tracking_vive_pro, 0, "LHR-1", "1-1.1.2"},
                                  {"/dev/hidraw2", vendor_valve, tracking_vive_pro, 1, "LHR-1", "1-1.1.2"},
@@ -369,6 +371,7 @@ public:
                                  {"/dev/hidraw4", vendor_htc, mainboard_vive_pro, 0, "205B", "1-1.1.1"}};
     std::vector<HidInfo> list(std::uint16_t vendor) override {
         std::vector<HidInfo> out;
+        const std::lock_guard lock(mutex);
         if (plugged)
             std::copy_if(devices.begin(), devices.end(), std::back_inserter(out), [&](const HidInfo& d) { return d.vendor == vendor; });
         return out;
@@ -463,6 +466,25 @@ TEST(Device, TracksSaysHowItIsWornAndSurvivesBeingUnplugged) {
         EXPECT_GE(shared->reconnections(), 1u);  // more when this machine is so busy that the device seems frozen
     }
     EXPECT_FALSE(model.display_on);
+}
+
+TEST(Device, AMainboardThatComesLaterIsSwitchedOnAndRead) {
+    ViveModel model;
+    FakeBus bus(model);
+    const std::vector<HidInfo> all = bus.devices;
+    bus.devices.resize(3);  // no mainboard yet
+    MonotonicClock clock;
+    auto device = open_device(bus, clock);
+    ASSERT_TRUE(device) << device.error().message;
+    EXPECT_TRUE(within(5, [&] { return (*device)->tracker().statistics().samples > 100; }));
+    EXPECT_FALSE(model.display_on);
+    EXPECT_FALSE((*device)->status().ipd_mm);
+    {
+        const std::lock_guard lock(bus.mutex);
+        bus.devices = all;
+    }
+    EXPECT_TRUE(within(5, [&] { return model.display_on && (*device)->status().ipd_mm.has_value(); }));
+    EXPECT_EQ((*device)->reconnections(), 0u) << "tracking goes on meanwhile";
 }
 
 // ---- From reports to poses -----------------------------------------------------------------------------------------------------------
