@@ -3,50 +3,23 @@
 #include "drivers/eye_tracking/gaze_angles.h"
 #include "drivers/pupil_labs/pupil_labs_device.h"
 #include "drivers/pupil_labs/pupil_labs_tracker.h"
-#include "drivers/pupil_labs/testing/traced_eye.h"
+#include "drivers/pupil_labs/testing/eye_pictures.h"
 #include "drivers/v4l2_camera/testing/fake_cameras.h"
 
 #include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
 #include <linux/v4l2-controls.h>
-#include <turbojpeg.h>
 
 namespace entoptic::drivers {
 namespace {
 
+using testing::eye_at;
+using testing::eye_pictures;
 using testing::FakePicture;
 using testing::FakeVideoSystem;
-
-std::vector<std::uint8_t> jpeg_of(const Image8& image) {
-    tjhandle encoder = tjInitCompress();
-    unsigned char* bytes = nullptr;
-    unsigned long size = 0;
-    EXPECT_EQ(tjCompress2(encoder, image.data.data(), image.width, 0, image.height, TJPF_GRAY, &bytes, &size, TJSAMP_GRAY, 90, 0), 0);
-    std::vector<std::uint8_t> out(bytes, bytes + size);
-    tjFree(bytes);
-    tjDestroy(encoder);
-    return out;
-}
-
-// An eye that looks around, 24 pictures a round, as a Cam3 at 192 px sees it.
-testing::TracedEye eye_at(int i) {
-    testing::TracedEye eye;
-    eye.camera = pupil_labs_camera("Pupil Cam3 ID0", 192, 192);
-    const double right = 0.3 * std::sin(2 * M_PI * i / 24), down = 0.2 * std::cos(2 * M_PI * 3 * i / 24);
-    eye.pose = {{0, 0, 30}, Eigen::Vector3d(std::sin(right) * std::cos(down), std::sin(down), -std::cos(right) * std::cos(down)), 2};
-    eye.seed = static_cast<std::uint64_t>(i);
-    return eye;
-}
-
-const std::vector<std::vector<std::uint8_t>>& pictures() {
-    static const auto all = [] {
-        std::vector<std::vector<std::uint8_t>> jpegs;
-        for (int i = 0; i < 24; ++i) jpegs.push_back(jpeg_of(traced(eye_at(i))));
-        return jpegs;
-    }();
-    return all;
-}
+using testing::jpeg_of;
+using testing::striped_picture;
 
 CompressedFrame frame_of(const std::vector<std::uint8_t>& bytes, TimeNs time) { return {bytes, time, 0}; }
 
@@ -56,7 +29,7 @@ TEST(EyeProcessor, MeasuresGazeAndPupilOfAnEyeThatLooksAround) {
     std::vector<RawEyeSample> late;
     for (int i = 0; i < 480; ++i) {
         const TimeNs time = TimeNs{i + 1} * 5'000'000;
-        const auto sample = processor.process(frame_of(pictures()[static_cast<std::size_t>(i % 24)], time), time + 8'000'000);
+        const auto sample = processor.process(frame_of(eye_pictures()[static_cast<std::size_t>(i % 24)], time), time + 8'000'000);
         ASSERT_TRUE(sample);
         EXPECT_GT(sample->confidence, 0.8f);
         EXPECT_FALSE(sample->pupil_diameter_mm == 0) << "no zero pupil";
@@ -78,8 +51,8 @@ TEST(EyeProcessor, TheUpsideDownEyeIsTurnedBack) {
     double up_and_down = 0;
     for (int i = 0; i < 480; ++i) {
         testing::TracedEye eye = eye_at(i % 24);
-        sample =
-            processor.process(frame_of(pictures()[static_cast<std::size_t>(i % 24)], TimeNs{i + 1} * 5'000'000), TimeNs{i + 2} * 5'000'000);
+        sample = processor.process(frame_of(eye_pictures()[static_cast<std::size_t>(i % 24)], TimeNs{i + 1} * 5'000'000),
+                                   TimeNs{i + 2} * 5'000'000);
         // The picture's down (+y) is up for a camera that hangs upside down.
         if (i >= 456) up_and_down += sample->gaze_direction.y * static_cast<float>(eye.pose.optical_axis.y());
     }
@@ -88,17 +61,14 @@ TEST(EyeProcessor, TheUpsideDownEyeIsTurnedBack) {
 
 TEST(EyeProcessor, DropsCorruptAndStripedPicturesAndCountsThem) {
     EyeProcessor processor(0, pupil_labs_camera("Pupil Cam3 ID1", 192, 192));
-    const auto& good = pictures()[0];
+    const auto& good = eye_pictures()[0];
     EXPECT_FALSE(processor.process(frame_of({good.begin(), good.begin() + static_cast<long>(good.size() / 2)}, 1), 2));
     EXPECT_FALSE(processor.process(frame_of({}, 1), 2));
-    Image8 stripes(192, 192, 1);
-    for (int y = 0; y < 192; ++y)
-        for (int x = 0; x < 192; ++x) stripes.at(x, y, 0) = y / 2 % 2 == 0 ? 40 : 200;
-    EXPECT_FALSE(processor.process(frame_of(jpeg_of(stripes), 1), 2));
+    EXPECT_FALSE(processor.process(frame_of(jpeg_of(striped_picture()), 1), 2));
     EXPECT_TRUE(processor.process(frame_of(good, 1), 2));
     EXPECT_EQ(processor.counts().corrupt, 2u);
     EXPECT_EQ(processor.counts().striped, 1u);
-    for (const auto& picture : pictures()) EXPECT_TRUE(processor.process(frame_of(picture, 3), 4)) << "an eye is not striped";
+    for (const auto& picture : eye_pictures()) EXPECT_TRUE(processor.process(frame_of(picture, 3), 4)) << "an eye is not striped";
 }
 
 TEST(EyeProcessor, AClosedEyeHasNoDirectionAndNoZeroPupil) {
@@ -152,7 +122,7 @@ struct Tracker : ::testing::Test {
     std::array<std::atomic<std::uint32_t>, 2> sent{};
 
     void SetUp() override {
-        (void)pictures();
+        (void)eye_pictures();
         for (int eye = 0; eye < 2; ++eye) {
             auto& camera = system.cameras[eye == 0 ? "/dev/video2" : "/dev/video0"];
             camera.name = eye == 0 ? "Pupil Cam3 ID1" : "Pupil Cam3 ID0";
@@ -162,7 +132,7 @@ struct Tracker : ::testing::Test {
     std::optional<FakePicture> next_picture(int eye) {
         const std::uint32_t n = sent[static_cast<std::size_t>(eye)]++;
         FakePicture picture;
-        picture.bytes = pictures()[n % 24];
+        picture.bytes = eye_pictures()[n % 24];
         picture.sequence = n;
         picture.time = clock.now() - 3'000'000;
         return picture;
@@ -246,10 +216,7 @@ TEST_F(Tracker, WithoutAWayRoundTheUserIsToldWhy) {
 }
 
 TEST_F(Tracker, StripesRestartTheStream) {
-    Image8 stripes(192, 192, 1);
-    for (int y = 0; y < 192; ++y)
-        for (int x = 0; x < 192; ++x) stripes.at(x, y, 0) = y / 2 % 2 == 0 ? 40 : 200;
-    const auto bytes = jpeg_of(stripes);
+    const auto bytes = jpeg_of(striped_picture());
     camera("/dev/video2").picture = [&]() -> std::optional<FakePicture> {
         auto picture = next_picture(0);
         if (camera("/dev/video2").times_started == 1) picture->bytes = bytes;

@@ -113,8 +113,7 @@ void PupilLabsTracker::adjust_exposure(FrameStream& camera, const EyeProcessor& 
 void PupilLabsTracker::publish(int eye, const FrameStream& camera, const EyeProcessor& processor) {
     const std::lock_guard lock(mutex_);
     Eye& e = eyes_[index(eye)];
-    e.camera = camera.counts();
-    e.pictures = processor.counts();
+    e.counts = {camera.counts(), processor.counts()};
     e.modelled = processor.model().fitted();
 }
 
@@ -169,10 +168,15 @@ std::string PupilLabsTracker::camera_status(int eye) const {
     if (!e.state.empty()) return e.state;
     std::string text = fmt::format("{}, {} x {} at {:.0f} Hz{}{}", e.product, e.mode.width, e.mode.height, e.mode.rate_hz,
                                    e.note.empty() ? "" : ", ", e.note);
-    text += fmt::format("; {} pictures, {} lost, {} corrupt, {} striped", e.camera.frames, e.camera.lost,
-                        e.camera.corrupt + e.pictures.corrupt, e.pictures.striped);
+    text += fmt::format("; {} pictures, {} lost, {} corrupt, {} striped", e.counts.camera.frames, e.counts.camera.lost,
+                        e.counts.camera.corrupt + e.counts.pictures.corrupt, e.counts.pictures.striped);
     if (!e.modelled) text += "; look around: the eye's model needs different directions";
     return text;
+}
+
+EyeCameraCounts PupilLabsTracker::counts(int eye) const {
+    const std::lock_guard lock(mutex_);
+    return eyes_[index(eye)].counts;
 }
 
 std::string PupilLabsTracker::description() const {

@@ -28,6 +28,12 @@ struct PupilLabsOptions {
     DurationNs retry = 1'000'000'000;
 };
 
+// Of one eye's pictures, since its camera was opened last.
+struct EyeCameraCounts {
+    CameraCounts camera;  // on the way from the camera
+    EyeCounts pictures;   // and what was in them
+};
+
 // Which eye a product's name belongs to: "... ID0" is the right eye (1), "... ID1" the left (0); none for other cameras.
 std::optional<int> eye_of(const std::string& product);
 
@@ -44,14 +50,14 @@ public:
 
     // Of one eye: pictures lost on the way and dropped, as words for the user; and why there is no camera.
     std::string camera_status(int eye) const;
+    EyeCameraCounts counts(int eye) const;
 
 private:
     struct Eye {
         std::thread thread;
         std::string state = "not looked for yet";  // why there are no pictures; empty: there are
         std::string product, note;                 // note: what the user should know though it works
-        CameraCounts camera;
-        EyeCounts pictures;
+        EyeCameraCounts counts;
         CameraMode mode;
         bool modelled = false;
     };

@@ -2,10 +2,13 @@
 // Whole sessions on emulated hardware: hello_xr under `entoptic run`, the headset on the kernel's USB, its panel on the kernel's display code.
 // Runs on tests/devices/run_um.sh --edid; ENTOPTIC_COMMAND is the command's path.
 #include "base/image_io.h"
+#include "base/noise.h"
 #include "compositor/targets/kms/testing/wayland_lessor.h"
 #include "drivers/vive_pro/vive_pro_connection.h"
+#include "tests/devices/emulated_eyes.h"
 #include "tests/devices/emulated_vive.h"
 #include "tests/devices/panel_on_kernel.h"
+#include "tests/devices/test_process.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -24,22 +27,37 @@ namespace fs = std::filesystem;
 
 MonotonicClock the_clock;
 
-// One run in a folder of its own.
+std::string command_path() {
+    const char* command = std::getenv("ENTOPTIC_COMMAND");
+    return command ? command : "entoptic";
+}
+
+// One run in a folder of its own. `frames` 0: until end().
 class SessionRun {
 public:
     SessionRun(const std::string& options, int frames) {
-        const char* command = std::getenv("ENTOPTIC_COMMAND");
         fs::remove_all(folder_);
         fs::create_directories(folder_);
-        call_ = fmt::format("exec {} run --frames {} --report {}/report.json {} -- hello_xr -g Vulkan2 >{}/output 2>&1",
-                            command ? command : "entoptic", frames, folder_.string(), options, folder_.string());
+        call_ = fmt::format("exec {} run {} --report {}/report.json {} -- hello_xr -g Vulkan2 >{}/output 2>&1", command_path(),
+                            frames ? fmt::format("--frames {}", frames) : "", folder_.string(), options, folder_.string());
+        int ends[2] = {-1, -1};  // hello_xr ends when its standard input does
+        EXPECT_EQ(pipe2(ends, O_CLOEXEC), 0);
         process_ = fork();
         if (process_ == 0) {
-            int ends[2];  // hello_xr ends when its standard input does
-            if (pipe(ends) == 0) dup2(ends[0], 0);
+            dup2(ends[0], 0);
             execl("/bin/sh", "sh", "-c", call_.c_str(), nullptr);
             _exit(127);
         }
+        close(ends[0]);
+        input_ = ends[1];
+    }
+    ~SessionRun() { end(); }
+    SessionRun(const SessionRun&) = delete;
+    SessionRun& operator=(const SessionRun&) = delete;
+    // As a key pressed in hello_xr's terminal.
+    void end() {
+        if (input_ >= 0) close(input_);
+        input_ = -1;
     }
     // The exit code; -1 when it did not end in time.
     int wait(double seconds) {
@@ -57,21 +75,24 @@ public:
         return {std::istreambuf_iterator<char>(in), {}};
     }
     nlohmann::json report() const { return nlohmann::json::parse(text("report.json"), nullptr, false); }
-    // Displayed frames so far, as `entoptic status` has them.
     const fs::path& folder() const { return folder_; }
 
 private:
     fs::path folder_ = fs::temp_directory_path() / fmt::format("entoptic-session-{}", getpid());
     std::string call_;
     pid_t process_ = -1;
+    int input_ = -1;
 };
 
-template <class Condition> bool within(double seconds, Condition condition) {
-    for (int i = 0; i < seconds * 20; ++i) {
-        if (condition()) return true;
-        the_clock.sleep_until(the_clock.now() + ns_per_s / 20);
-    }
-    return condition();
+// What `entoptic status` says of the one runtime that runs; null when none does.
+nlohmann::json runtime_status() {
+    std::string text;
+    FILE* output = popen((command_path() + " status --json 2>/dev/null").c_str(), "r");
+    char piece[4096];
+    for (std::size_t got = 0; output && (got = fread(piece, 1, sizeof piece, output)) > 0;) text.append(piece, got);
+    if (output) pclose(output);
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    return json.is_object() && json["runtimes"].size() == 1 ? json["runtimes"][0] : nlohmann::json();
 }
 
 bool plug_in(EmulatedVive& vive) {
@@ -105,7 +126,9 @@ std::string dumped_frame(const fs::path& dumps, const std::vector<std::uint32_t>
 
 TEST(Session, HelloXrOnTheViveProsPanelAtItsOwnRate) {
     EmulatedVive vive;
+    EmulatedEyes eyes;
     ASSERT_TRUE(plug_in(vive));
+    ASSERT_TRUE(eyes.plug());
     constexpr int frames = 20;
     SessionRun run("--hmd vive-pro --target kms --preset off --eye-scale 0.5 --dump " +
                        (fs::temp_directory_path() / "entoptic-dumps").string() + " --dump-stages panel",
@@ -122,6 +145,8 @@ TEST(Session, HelloXrOnTheViveProsPanelAtItsOwnRate) {
     std::printf("%s\nframes %s\n", report["target"].get<std::string>().c_str(), report["frames"].dump().c_str());
     EXPECT_EQ(report["target"].get<std::string>().find("HTC Vive Pro on DP-1 of /dev/dri/card0 (vkms), 2880x1600 at 90.04 Hz"), 0u);
     EXPECT_EQ(report["errors"].dump(), "[]");
+    EXPECT_GT(eyes.right.frames, 0);
+    EXPECT_GT(eyes.left.frames, 0);
     EXPECT_GE(report["frames"]["displayed"].get<int>(), frames);
     EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
     EXPECT_EQ(report["frames"]["unseen"].get<int>(), 0);
@@ -158,6 +183,50 @@ TEST(Session, GoesOnWhenTheWaylandCompositorTakesItsLeaseBackAndGivesItAgain) {
     EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
     EXPECT_NE(report["errors"].dump().find("taken back by the display server"), std::string::npos);
     EXPECT_EQ(server.leases(), 0);
+}
+
+// Any of headset and eye cameras goes and comes again, whatever the drivers are just doing. The application never notices more than lost tracking.
+TEST(Session, StaysAliveThroughRandomUnplugs) {
+    EmulatedVive vive;
+    vive.model.motion = {0.5, 0.3, 0.1};
+    EmulatedEyes eyes;
+    ASSERT_TRUE(plug_in(vive));
+    ASSERT_TRUE(eyes.plug());
+    SessionRun run("--hmd vive-pro --target headless --preset off --eye-scale 0.1", 0);
+    const auto all_there = [&] {
+        const auto status = runtime_status();
+        if (!status.is_object() || !status["headset"]["present"].get<bool>() || !vive.model.display_on) return false;
+        const std::string tracker = status["eye_tracker"]["why"];
+        return tracker.find("left: tracked") != std::string::npos && tracker.find("right: tracked") != std::string::npos;
+    };
+    ASSERT_TRUE(within(60, all_there)) << run.text("output");
+    const char* wanted = std::getenv("ENTOPTIC_DEVICE_REPLUGS");
+    const int replugs = wanted ? std::atoi(wanted) : 10;
+    const auto random = [](int i, std::uint64_t what) { return uniform01(what, static_cast<std::uint64_t>(i)); };
+    std::array<int, 4> unplugged{};
+    for (int i = 0; i < replugs; ++i) {
+        sleep_s(random(i, 1));
+        const auto which = static_cast<std::size_t>(random(i, 2) * 4);
+        EmulatedUsb& device = *std::array<EmulatedUsb*, 4>{&vive.unit, &vive.board, &eyes.right, &eyes.left}[which];
+        ++unplugged[which];
+        device.unplug();
+        if (which == 1) vive.model.display_on = false;  // it has no power
+        sleep_s(0.5 * random(i, 3));
+        ASSERT_TRUE(within(5, [&] {
+            return bool(device.plug(std::array{1, 0, EmulatedEyes::right_port, EmulatedEyes::left_port}[which]));
+        })) << i;
+        ASSERT_TRUE(i % 10 != 9 || runtime_status().is_object()) << i << "\n" << run.text("output");
+    }
+    EXPECT_TRUE(within(30, all_there)) << runtime_status().dump(2);
+    run.end();
+    EXPECT_EQ(run.wait(60), 0) << run.text("output");
+    const auto report = run.report();
+    ASSERT_TRUE(report.is_object()) << run.text("output");
+    fmt::print("{} unplugs of the tracking unit, {} of the mainboard, {} and {} of the cameras\nframes {}\nerrors {}\n", unplugged[0],
+               unplugged[1], unplugged[2], unplugged[3], report["frames"].dump(), report["errors"].dump());
+    EXPECT_EQ(report["errors"].dump(), "[]");
+    EXPECT_EQ(report["frames"]["missed"].get<int>(), 0);
+    EXPECT_GT(report["frames"]["displayed"].get<int>(), replugs * 40);
 }
 
 // Debian's Xorg with its modesetting driver, of a seat without a terminal. Its one output is the headset's, which it lights for want of others.

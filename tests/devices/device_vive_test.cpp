@@ -2,10 +2,9 @@
 // The driver of the Vive Pro against the kernel's own USB and HID drivers, with an emulated headset. Runs on tests/devices/run_um.sh.
 #include "drivers/vive_pro/vive_pro_device.h"
 #include "tests/devices/emulated_vive.h"
+#include "tests/devices/test_process.h"
 
-#include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,18 +16,6 @@ using vive_pro::Device;
 using vive_pro::TrackerStatistics;
 
 MonotonicClock the_clock;
-
-template <class Condition> bool within(double seconds, Condition condition) {
-    for (int i = 0; i < static_cast<int>(seconds * 100); ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return condition();
-}
-void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
-
-std::size_t open_files() { return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {})); }
-std::size_t threads() { return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator("/proc/self/task"), {})); }
 
 // Both functions of the tracking unit and the mainboard have their nodes.
 bool nodes_there() {
@@ -50,7 +37,8 @@ TEST(ViveOnTheKernel, IsFoundSwitchedOnAndReadWithoutALostSample) {
     {
         EmulatedVive vive;
         vive.model.motion = {0.5, 0.3, 0.1};
-        vive.model.room.stations = {lighthouse::testing::perfect_station({-1.5, 2.2, -2}, 1), lighthouse::testing::perfect_station({1.8, 2.1, -1.6}, 2)};
+        vive.model.room.stations = {lighthouse::testing::perfect_station({-1.5, 2.2, -2}, 1),
+                                    lighthouse::testing::perfect_station({1.8, 2.1, -1.6}, 2)};
         auto device = open_plugged(vive);
         ASSERT_TRUE(device);
         EXPECT_EQ(device->calibration().serial, "LHR-EXAMPLE1");
@@ -125,7 +113,7 @@ TEST(ViveOnTheKernel, ShortAndCorruptReportsAreCountedAndDoNoHarm) {
     ASSERT_TRUE(device);
     sleep_s(5);
     const TrackerStatistics s = device->tracker().statistics();
-    EXPECT_LE(s.malformed, 105u);    // newer kernels keep short reports to themselves, older ones hand them over
+    EXPECT_LE(s.malformed, 105u);   // newer kernels keep short reports to themselves, older ones hand them over
     EXPECT_EQ(s.lost_samples, 0u);  // the next report brings what the short one lacked
     EXPECT_EQ(s.restarts, 0u);
 }
@@ -157,6 +145,23 @@ TEST(ViveOnTheKernel, AFrozenHeadsetIsAbsentAndComesBack) {
     EXPECT_FALSE(device->tracker().pose_at(the_clock.now()).orientation_tracked);
     vive.unit.frozen = false;
     EXPECT_TRUE(within(10, [&] { return device->status().present && device->tracker().pose_at(the_clock.now()).orientation_tracked; }));
+}
+
+TEST(ViveOnTheKernel, AMainboardThatComesLaterIsSwitchedOnAndRead) {
+    EmulatedVive vive;
+    ASSERT_TRUE(vive.unit.plug(1));
+    ASSERT_TRUE(within(10, [] {
+        const auto found = vive_pro::find_headsets(system_hid_bus());
+        return found.size() == 1 && !found[0].light.path.empty();
+    }));
+    auto device = vive_pro::open_device(system_hid_bus(), the_clock);
+    ASSERT_TRUE(device) << device.error().message;
+    sleep_s(1);
+    EXPECT_FALSE(vive.model.display_on);
+    ASSERT_TRUE(vive.board.plug(0));
+    EXPECT_TRUE(within(5, [&] { return vive.model.display_on && (*device)->status().ipd_mm.has_value(); }));
+    EXPECT_EQ((*device)->reconnections(), 0u);
+    EXPECT_EQ((*device)->tracker().statistics().lost_samples, 0u);
 }
 
 TEST(ViveOnTheKernel, RandomUnplugsAndReplugsWithTheSessionAlive) {

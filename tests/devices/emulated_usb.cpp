@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <endian.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fstream>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -18,7 +21,7 @@ namespace {
 constexpr std::uint32_t command_submit = 1, command_unlink = 2, return_submit = 3, return_unlink = 4;
 constexpr int speed_high = 3;
 constexpr std::uint8_t get_status = 0, clear_feature = 1, set_feature = 3, get_descriptor = 6, get_configuration = 8, set_configuration = 9,
-                       set_interface = 11;
+                       usb_set_interface = 11;
 
 using Header = std::array<std::uint32_t, 12>;  // big-endian on the wire, but for the setup packet in the last two
 
@@ -48,6 +51,16 @@ bool write_line(const char* path, const std::string& text) {
     const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     close(file);
     return written;
+}
+
+// By the kernel's own table: lines of "hs  0004 004 ..." with the port and its state, 4 for free.
+bool port_is_free(int port) {
+    std::ifstream table("/sys/devices/platform/vhci_hcd.0/status");
+    for (std::string line; std::getline(table, line);) {
+        int number = -1, state = -1;
+        if (std::sscanf(line.c_str(), "hs %d %d", &number, &state) == 2 && number == port) return state == 4;
+    }
+    return false;
 }
 
 }  // namespace
@@ -93,8 +106,11 @@ void EmulatedUsb::unplug() {
     thread_.join();
     close(socket_);
     socket_ = -1;
-    write_line("/sys/devices/platform/vhci_hcd.0/detach", fmt::format("{}", port_));  // frees the port at once
+    write_line("/sys/devices/platform/vhci_hcd.0/detach", fmt::format("{}", port_));
+    for (int i = 0; i < 1000 && !port_is_free(port_); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
+
+InAnswer EmulatedUsb::in_packets(int, std::span<IsoPacket>, TimeNs) { return {InAnswer::Kind::stall, {}, -1}; }
 
 void EmulatedUsb::run() {
     for (;;) {
@@ -140,13 +156,22 @@ bool EmulatedUsb::handle_message() {
         data.resize(std::min<std::uint32_t>(h[6], 1 << 20));
         if (!receive(data.data(), data.size())) return false;
     }
+    std::vector<IsoPacket> packets;
+    if (h[8] != 0 && h[8] != 0xffffffff) {
+        packets.resize(std::min<std::uint32_t>(h[8], 1024));
+        for (IsoPacket& packet : packets) {
+            std::array<std::uint32_t, 4> words{};
+            if (!receive(words.data(), sizeof words)) return false;
+            packet = {be32toh(words[0]), be32toh(words[1]), 0, 0};
+        }
+    }
     Setup setup;
     static_assert(sizeof setup == 8);
     std::memcpy(static_cast<void*>(&setup), &h[10], sizeof setup);  // little-endian on the wire, as this machine is
     if (endpoint == 0)
         handle_control(sequence, to_host, setup, data);
     else if (to_host)
-        waiting_[static_cast<int>(endpoint)].push_back({sequence, h[6]});
+        waiting_[static_cast<int>(endpoint)].push_back({sequence, h[6], std::move(packets)});
     else
         reply(sequence, -EPIPE, false, {}, 0);  // no device here has an OUT endpoint
     return true;
@@ -182,17 +207,22 @@ void EmulatedUsb::handle_control(std::uint32_t sequence, bool to_host, const Set
         return;
     }
     const bool standard = (setup.type & 0x60) == 0;
+    if (standard && setup.request == usb_set_interface) set_interface(setup.index, setup.value);
     if (standard && setup.request == set_configuration) configuration_ = static_cast<std::uint8_t>(setup.value);
-    const bool done = standard ? (setup.request == set_configuration || setup.request == set_interface || setup.request == clear_feature ||
-                                  setup.request == set_feature)
+    const bool done = standard ? (setup.request == set_configuration || setup.request == usb_set_interface ||
+                                  setup.request == clear_feature || setup.request == set_feature)
                                : control_out(setup, data);
     reply(sequence, done ? 0 : -EPIPE, false, {}, done ? data.size() : 0);
 }
 
-void EmulatedUsb::reply(std::uint32_t sequence, std::int32_t status, bool to_host, std::span<const std::uint8_t> data, std::size_t actual) {
-    Bytes out =
-        message({return_submit, sequence, 0, 0, 0, static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(actual), 0, 0, 0});
+void EmulatedUsb::reply(std::uint32_t sequence, std::int32_t status, bool to_host, std::span<const std::uint8_t> data, std::size_t actual,
+                        std::span<const IsoPacket> packets) {
+    Bytes out = message({return_submit, sequence, 0, 0, 0, static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(actual), 0,
+                         static_cast<std::uint32_t>(packets.size()), 0});
     if (to_host) out.insert(out.end(), data.begin(), data.end());
+    for (const IsoPacket& packet : packets)
+        for (const std::uint32_t word : {packet.offset, packet.length, packet.actual, packet.status})
+            for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(word >> shift));
     send_all(socket_, out);
 }
 
@@ -201,13 +231,15 @@ TimeNs EmulatedUsb::serve(TimeNs now) {
     TimeNs next = -1;
     for (auto& [endpoint, requests] : waiting_) {
         while (!requests.empty()) {
-            InAnswer answer = in(endpoint, now);
+            Request& request = requests.front();
+            InAnswer answer = request.packets.empty() ? in(endpoint, now) : in_packets(endpoint, request.packets, now);
             if (answer.kind == InAnswer::Kind::wait) {
                 if (answer.due >= 0) next = next < 0 ? answer.due : std::min(next, answer.due);
                 break;
             }
-            if (answer.data.size() > requests.front().length) answer.data.resize(requests.front().length);
-            reply(requests.front().sequence, answer.kind == InAnswer::Kind::stall ? -EPIPE : 0, true, answer.data, answer.data.size());
+            if (answer.data.size() > request.length) answer.data.resize(request.length);
+            reply(request.sequence, answer.kind == InAnswer::Kind::stall ? -EPIPE : 0, true, answer.data, answer.data.size(),
+                  request.packets);
             requests.pop_front();
         }
     }

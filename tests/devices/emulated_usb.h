@@ -40,6 +40,11 @@ struct InAnswer {
     TimeNs due = -1;  // of wait: when to ask again; -1 when something else happens
 };
 
+// A packet of an isochronous transfer: room for `length` bytes, of which `actual` were sent.
+struct IsoPacket {
+    std::uint32_t offset = 0, length = 0, actual = 0, status = 0;
+};
+
 class EmulatedUsb {
 public:
     explicit EmulatedUsb(UsbDescriptors descriptors) : descriptors_(std::move(descriptors)) {}
@@ -49,7 +54,7 @@ public:
 
     // Plugs it into port 0..7 of the virtual hub. Errors: there is no vhci_hcd, or it refused.
     Result<void> plug(int port);
-    void unplug();
+    void unplug();  // and waits until the port can be used again
     bool plugged() const { return socket_ >= 0; }
 
 protected:
@@ -58,6 +63,9 @@ protected:
     virtual std::optional<Bytes> control_in(const Setup& setup) = 0;
     virtual bool control_out(const Setup& setup, std::span<const std::uint8_t> data) = 0;
     virtual InAnswer in(int endpoint, TimeNs now) = 0;
+    // An isochronous request: fills `packets` and returns their data, one after the other without gaps.
+    virtual InAnswer in_packets(int endpoint, std::span<IsoPacket> packets, TimeNs now);
+    virtual void set_interface(int, int /*alternative*/) {}
     virtual void plugged_in() {}
     UsbDescriptors descriptors_;
 
@@ -65,12 +73,14 @@ private:
     struct Request {
         std::uint32_t sequence = 0;
         std::uint32_t length = 0;
+        std::vector<IsoPacket> packets;  // empty: not isochronous
     };
     void run();
     bool handle_message();
     void handle_control(std::uint32_t sequence, bool to_host, const Setup& setup, std::span<const std::uint8_t> data);
     std::optional<Bytes> standard_in(const Setup& setup);
-    void reply(std::uint32_t sequence, std::int32_t status, bool to_host, std::span<const std::uint8_t> data, std::size_t actual);
+    void reply(std::uint32_t sequence, std::int32_t status, bool to_host, std::span<const std::uint8_t> data, std::size_t actual,
+               std::span<const IsoPacket> packets = {});
     TimeNs serve(TimeNs now);
     bool receive(void* into, std::size_t bytes);
 
