@@ -39,6 +39,10 @@ std::string line_of(const fs::path& path) {
     return line;
 }
 
+bool may_open(const MachinePlaces& places, const std::string& node) {
+    return places.may_open ? places.may_open(node) : access(node.c_str(), R_OK | W_OK) == 0;
+}
+
 // The rules that came with this build: installed, or in the build tree.
 std::string own_rules() {
     std::error_code error;
@@ -125,12 +129,41 @@ std::vector<Finding> check_udev_rules(const MachinePlaces& places) {
              install_rules()}};
 }
 
+// Render nodes are the GPU; card nodes are what puts pictures on a headset's panel where no desktop leases it.
+std::vector<Finding> check_graphics_nodes(const MachinePlaces& places) {
+    std::vector<Finding> out;
+    std::string usable;
+    bool any = false;
+    for (const fs::path& node : entries(fs::path(places.dev) / "dri")) {
+        const std::string name = node.filename().string();
+        const bool render = name.rfind("renderD", 0) == 0;
+        if (!render && name.rfind("card", 0) != 0) continue;
+        any = true;
+        if (may_open(places, node.string()))
+            usable += (usable.empty() ? "" : ", ") + node.string();
+        else if (render)
+            out.push_back({State::problem, "graphics",
+                           fmt::format("{} may not be opened by this user: the GPU cannot be used.", node.string()),
+                           "sudo usermod -aG render,video $USER, then log in again"});
+        else
+            out.push_back(
+                {State::note, "graphics",
+                 fmt::format("{} may not be opened by this user: a headset's panel there needs a desktop that leases it.", node.string()),
+                 install_rules()});
+    }
+    if (!usable.empty()) out.push_back({State::good, "graphics", usable, ""});
+    if (!any)
+        out.push_back({State::note, "graphics", "There is no /dev/dri: no GPU, and no display that a headset's panel could be on.",
+                       "Load the driver of your graphics card; in a container, pass /dev/dri through"});
+    return out;
+}
+
 std::vector<Finding> check_headset(const MachinePlaces& places) {
     const auto found = drivers::vive_pro::find_headsets(drivers::system_hid_bus());
     std::vector<Finding> out;
     for (const auto& functions : found) {
         for (const auto* info : {&functions.imu, &functions.light, &functions.mainboard})
-            if (!info->path.empty() && access(info->path.c_str(), R_OK | W_OK) != 0)
+            if (!info->path.empty() && !may_open(places, info->path))
                 out.push_back({State::problem, "headset",
                                fmt::format("{} ({:04x}:{:04x}) may not be opened by this user.", info->path, info->vendor, info->product),
                                install_rules()});
@@ -178,9 +211,9 @@ std::vector<Finding> check_panel(const MachinePlaces& places, bool headset_is_th
 std::vector<Finding> check_eye_cameras(const MachinePlaces& places) {
     std::vector<Finding> out;
     for (const fs::path& node : entries(fs::path(places.sysfs) / "class/video4linux")) {
-        const std::string name = line_of(node / "name"), device = "/dev/" + node.filename().string();
+        const std::string name = line_of(node / "name"), device = (fs::path(places.dev) / node.filename()).string();
         if (name.rfind("Pupil Cam", 0) != 0 || line_of(node / "index") != "0") continue;  // index 1 carries metadata only
-        if (access(device.c_str(), R_OK | W_OK) != 0)
+        if (!may_open(places, device))
             out.push_back({State::problem, "eye camera", fmt::format("{} ({}) may not be opened by this user.", device, name),
                            "sudo usermod -aG video $USER, then log in again"});
         else
@@ -194,8 +227,8 @@ std::vector<Finding> check_eye_cameras(const MachinePlaces& places) {
 
 std::vector<Finding> check_machine(const MachinePlaces& places) {
     std::vector<Finding> all;
-    for (auto& part : {check_vulkan(), check_openxr(), check_configuration(), check_udev_rules(places), check_headset(places),
-                       check_eye_cameras(places)})
+    for (auto& part : {check_vulkan(), check_openxr(), check_configuration(), check_udev_rules(places), check_graphics_nodes(places),
+                       check_headset(places), check_eye_cameras(places)})
         all.insert(all.end(), part.begin(), part.end());
     return all;
 }

@@ -21,7 +21,13 @@ protected:
         fs::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << text;
     }
-    MachinePlaces places() const { return {(folder_ / "sys").string(), {(folder_ / "rules").string()}}; }
+    MachinePlaces places() const {
+        return {(folder_ / "sys").string(), (folder_ / "dev").string(), {(folder_ / "rules").string()}, [this](const std::string& node) {
+                    return fs::exists(node) && node != closed_;
+                }};
+    }
+    std::string node(const std::string& name) const { return (folder_ / "dev" / name).string(); }
+    std::string closed_;  // a node that this user may not open
     fs::path folder_ = fs::temp_directory_path() / ("entoptic_checks_" + std::to_string(getpid()));
 };
 
@@ -63,6 +69,32 @@ TEST_F(ChecksTest, EyeCamerasByTheirNames) {
     ASSERT_EQ(findings.size(), 1u);
     EXPECT_EQ(findings[0].state, Finding::State::problem);  // there is no such node
     EXPECT_NE(findings[0].what.find("video990"), std::string::npos);
+    write("dev/video990", "");
+    EXPECT_EQ(check_eye_cameras(places())[0].state, Finding::State::good);
+    closed_ = node("video990");
+    EXPECT_EQ(check_eye_cameras(places())[0].state, Finding::State::problem);
+    EXPECT_NE(check_eye_cameras(places())[0].mend.find("usermod -aG video"), std::string::npos);
+}
+
+TEST_F(ChecksTest, GraphicsNodesThatMayNotBeOpenedAreSaid) {
+    ASSERT_EQ(check_graphics_nodes(places()).size(), 1u);
+    EXPECT_EQ(check_graphics_nodes(places())[0].state, Finding::State::note);
+    for (const char* name : {"dri/card0", "dri/renderD128", "dri/by-path"}) write(std::string("dev/") + name, "");
+    auto findings = check_graphics_nodes(places());
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].state, Finding::State::good);
+    EXPECT_EQ(findings[0].what, node("dri/card0") + ", " + node("dri/renderD128"));
+    closed_ = node("dri/renderD128");  // no GPU: a problem
+    findings = check_graphics_nodes(places());
+    ASSERT_EQ(findings.size(), 2u);
+    EXPECT_EQ(findings[0].state, Finding::State::problem);
+    EXPECT_NE(findings[0].what.find("renderD128"), std::string::npos);
+    EXPECT_NE(findings[0].mend.find("usermod -aG render"), std::string::npos);
+    closed_ = node("dri/card0");  // no panel of one's own: a desktop may lease it
+    findings = check_graphics_nodes(places());
+    ASSERT_EQ(findings.size(), 2u);
+    EXPECT_EQ(findings[0].state, Finding::State::note);
+    EXPECT_NE(findings[0].mend.find("udevadm"), std::string::npos);
 }
 
 TEST_F(ChecksTest, WithoutAHeadsetNothingIsWrong) {
