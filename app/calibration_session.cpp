@@ -1,8 +1,8 @@
 #include "app/calibration_session.h"
 
+#include "app/calibration_target.h"
 #include "app/host/host.h"
 #include "app/launch.h"
-#include "drivers/eye_tracking/gaze_angles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,12 @@
 namespace entoptic::app {
 namespace {
 
-constexpr double target_distance_m = 2, target_size_m = 0.035;                   // one degree
+constexpr double target_size_m = 0.035;                                          // one degree
 constexpr double backdrop_distance_m = 3, backdrop_size_m = 30;                  // fills any lens
 constexpr std::uint32_t format_rgba8_srgb = 43, usage_colour_attachment = 0x10;  // VkFormat, VkImageUsageFlagBits
 constexpr double reaction_s = 0.2;                                               // of the virtual wearer: latency of a saccade
 constexpr double narrow_mm = 2.6, wide_mm = 6.4, pupil_moves_s = 2;              // of the virtual wearer, in the panel's white and black
 constexpr int small_panel_width = 48, small_panel_height = 54;  // virtual headset: nobody looks, the tracker is what is measured
-
-glm::dvec3 target_point(glm::dvec2 target_deg) { return target_distance_m * drivers::direction_of(target_deg); }
 
 // A head-locked square of even light: whatever its picture holds counts nothing (0 cd/m² a unit), its light is the offset.
 Layer square(std::uint64_t picture, glm::dvec3 at, double size_m, float cd_m2) {
@@ -92,8 +90,7 @@ private:
             if (!raw || raw->time <= newest_[e]) continue;
             newest_[e] = raw->time;
             CalibrationSample sample{step_, seconds(raw->time - start), eye, *raw, {}};
-            if (const auto& target = steps_[step_].target_deg)
-                sample.target_deg = drivers::angles_of(target_point(*target) - glm::dvec3(host_.headset().eyes[e].head_from_eye.position));
+            if (const auto& target = steps_[step_].target_deg) sample.target_deg = target_of_eye(host_.headset(), e, *target);
             samples_.push_back(sample);
         }
     }

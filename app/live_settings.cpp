@@ -73,7 +73,9 @@ Result<void> leave_request(int pid, const SettingsRequest& request) {
                     {"preset", request.choice.preset},
                     {"models", request.choice.models},
                     {"settings", request.choice.settings},
-                    {"reset", request.reset}};
+                    {"reset", request.reset},
+                    {"recentre_gaze", request.recentre_gaze},
+                    {"save_gaze", request.save_gaze}};
     const std::string path = request_file(pid), part = path + ".part";
     {
         std::ofstream out(part, std::ios::trunc);
@@ -102,7 +104,8 @@ Result<std::optional<SettingsRequest>> take_request(int pid) {
     if (!json.is_object() || !json.contains("id") || !is_text(json["id"])) return refused("it is not JSON with an id");
     const auto choice = choice_of(json);
     if (!choice) return refused("its models and settings are no lists of short texts");
-    return SettingsRequest{json["id"].get<std::string>(), *choice, json.value("reset", Json(false)) == Json(true)};
+    const auto is_set = [&](const char* key) { return json.value(key, Json(false)) == Json(true); };
+    return SettingsRequest{json["id"].get<std::string>(), *choice, is_set("reset"), is_set("recentre_gaze"), is_set("save_gaze")};
 }
 
 Json answer_json(const SettingsAnswer& answer) {
@@ -110,14 +113,17 @@ Json answer_json(const SettingsAnswer& answer) {
             {"preset", answer.choice.preset},
             {"models", answer.choice.models},
             {"settings", answer.choice.settings},
-            {"error", answer.error}};
+            {"error", answer.error},
+            {"gaze", answer.gaze}};
 }
 
 std::optional<SettingsAnswer> answer_of(const Json& status) {
     const auto found = status.find("adjusted");
     if (found == status.end() || !found->is_object() || !found->contains("id") || !is_text((*found)["id"])) return {};
-    SettingsAnswer answer{(*found)["id"].get<std::string>(), choice_of(*found).value_or(LiveChoice{}), ""};
-    if (const auto error = found->find("error"); error != found->end() && error->is_string()) answer.error = error->get<std::string>();
+    const auto text = [&](const char* key) {
+        return found->contains(key) && is_text((*found)[key]) ? (*found)[key].get<std::string>() : "";
+    };
+    SettingsAnswer answer{text("id"), choice_of(*found).value_or(LiveChoice{}), text("error"), text("gaze")};
     return answer;
 }
 

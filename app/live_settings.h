@@ -23,9 +23,10 @@ LiveChoice joined(LiveChoice now, const LiveChoice& more);
 std::string text_of(const LiveChoice& choice);
 
 struct SettingsRequest {
-    std::string id;      // the answer names it
-    LiveChoice choice;   // goes on top of what is in force
-    bool reset = false;  // first go back to what the runtime was started with
+    std::string id;                                 // the answer names it
+    LiveChoice choice;                              // goes on top of what is in force
+    bool reset = false;                             // first go back to what the runtime was started with
+    bool recentre_gaze = false, save_gaze = false;  // what the wearer looks at now is the centre; and keep that in the observer's file
 };
 
 // Leaves a request for the runtime of this process, whole; an older one that it has not taken goes. Errors: the folder cannot be written.
@@ -38,6 +39,7 @@ struct SettingsAnswer {
     std::string id;
     LiveChoice choice;  // in force
     std::string error;  // why the request changed nothing; empty: it was done
+    std::string gaze;   // what re-centring changed; empty: it was not asked for
 };
 nlohmann::ordered_json answer_json(const SettingsAnswer& answer);
 // None when the status has no such answer.

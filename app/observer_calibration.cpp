@@ -1,6 +1,7 @@
 #include "app/observer_calibration.h"
 
 #include "app/config.h"
+#include "app/observer_file.h"
 
 #include <cmath>
 #include <filesystem>
@@ -28,6 +29,16 @@ Result<toml::table> table_in(const fs::path& path) {
     } catch (const toml::parse_error& e) {
         return usage_error(fmt::format("{}:{}: {}.", path.string(), e.source().begin.line, e.description()));
     }
+}
+
+// What a person's file starts from: itself, or the observer of that name who comes with the program, whose place it will take.
+Result<toml::table> table_to_extend(const std::string& observer) {
+    const fs::path path = path_of(observer);
+    std::error_code error;
+    if (fs::exists(path, error)) return table_in(path);
+    for (const BuiltInObserver& person : built_in_observers())
+        if (observer == person.name) return toml::parse(person.toml);
+    return toml::table{};
 }
 
 tl::unexpected<Error> wrong(const fs::path& path, const toml::node& node, const std::string& what) {
@@ -102,7 +113,7 @@ Result<std::string> write_calibration(const std::string& observer, const EyeCali
     if (observer.empty() || observer.find('/') != std::string::npos)
         return usage_error(fmt::format("'{}' cannot be an observer's name: it names a file in observers/.", observer));
     const fs::path path = path_of(observer);
-    ENTOPTIC_TRY(table, table_in(path));
+    ENTOPTIC_TRY(table, table_to_extend(observer));
     put(table, calibration);
     std::error_code error;
     fs::create_directories(path.parent_path(), error);

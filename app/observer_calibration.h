@@ -18,7 +18,8 @@ namespace entoptic::app {
 // Empty when the file says nothing of it, or no observer is chosen. Errors name file and line.
 Result<drivers::EyeCalibration> read_calibration(const std::string& observer);
 
-// Puts what `calibration` holds into observers/NAME.toml, keeping everything else there (but comments); makes the file where there is none.
+// Puts what `calibration` holds into observers/NAME.toml, keeping everything else there (but comments); makes the file where there is none, from the
+// observer of that name who comes with the program if there is one.
 // Returns its path.
 Result<std::string> write_calibration(const std::string& observer, const drivers::EyeCalibration& calibration);
 

@@ -57,6 +57,8 @@ public:
     RunReport report() const;
     // Somebody could see pictures now: the display is not away.
     bool display_lit() const { return target_->lit(); }
+    // The user pressed the window's key for it since this was asked last.
+    bool take_recentre_wish() { return target_->take_recentre_wish(); }
     // What the last composition found, for `entoptic status`.
     FrameOutcome last_outcome() const;
     // Replaces models and parameters from the next frame on.

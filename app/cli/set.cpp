@@ -1,4 +1,4 @@
-// `entoptic set`: the preset, models and parameters of a running runtime.
+// `entoptic set`: the preset, models and parameters of a running runtime, and where its wearer's gaze is centred.
 #include "app/cli/command.h"
 #include "app/cli/output.h"
 #include "app/live_settings.h"
@@ -22,7 +22,7 @@ constexpr auto look_every = 20ms;
 struct Options {
     LiveChoice choice;
     int pid = 0;
-    bool reset = false, json = false;
+    bool reset = false, recentre_gaze = false, save = false, json = false;
 };
 
 std::string name_of(const RunningRuntime& runtime) {
@@ -57,11 +57,12 @@ Result<SettingsAnswer> answer_to(const std::string& id, int pid) {
 }
 
 Result<int> set(const Options& o) {
-    if (text_of(o.choice).empty() && !o.reset)
-        return usage_error("Nothing to set: write SLOT.PARAMETER=VALUE, such as glare.age=70, or --model, --preset or --reset.");
+    if (text_of(o.choice).empty() && !o.reset && !o.recentre_gaze)
+        return usage_error(
+            "Nothing to set: write SLOT.PARAMETER=VALUE, such as glare.age=70, or --model, --preset, --reset or --recentre-gaze.");
     ENTOPTIC_TRY(pid, chosen_runtime(o));
     const std::string id = fmt::format("{}-{}", getpid(), std::chrono::steady_clock::now().time_since_epoch().count());
-    ENTOPTIC_CHECK(leave_request(pid, {id, o.choice, o.reset}));
+    ENTOPTIC_CHECK(leave_request(pid, {id, o.choice, o.reset, o.recentre_gaze, o.save}));
     ENTOPTIC_TRY(answer, answer_to(id, pid));
     if (o.json) {
         Json document = answer_json(answer);
@@ -69,7 +70,8 @@ Result<int> set(const Options& o) {
         print_json(document);
     }
     if (!answer.error.empty()) return usage_error(answer.error);
-    if (!o.json)
+    if (!o.json && !answer.gaze.empty()) fmt::print("{}\n", answer.gaze);
+    if (!o.json && (o.reset || !text_of(o.choice).empty()))
         fmt::print("In force in process {}: {}\n", pid,
                    text_of(answer.choice).empty() ? "what it was started with" : text_of(answer.choice));
     return 0;
@@ -79,12 +81,15 @@ Result<int> set(const Options& o) {
 
 void add_set(CLI::App& app, Action& action) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("set", "Change preset, models and parameters while a runtime runs");
+    CLI::App* command = app.add_subcommand("set", "Change preset, models and parameters, or re-centre the gaze, while a runtime runs");
     command->add_option("settings", o->choice.settings, "SLOT.PARAMETER=VALUE; all of them take effect, or none");
     command->add_option("--model", o->choice.models, "SLOT=NAME, another model, or none; what the others have in memory stays");
     command->add_option("--preset", o->choice.preset, "Another preset, instead of all that was chosen before");
     command->add_option("--pid", o->pid, "Process of the runtime, when several run (entoptic status)")->check(CLI::PositiveNumber);
     command->add_flag("--reset", o->reset, "Go back to what the runtime was started with first");
+    CLI::Option* recentre = command->add_flag("--recentre-gaze", o->recentre_gaze,
+                                              "The eye tracker has slipped: the wearer looks straight ahead now (some two metres away)");
+    command->add_flag("--save", o->save, "With --recentre-gaze: keep it in the observer's file")->needs(recentre);
     command->add_flag("--json", o->json, "One JSON document on standard output");
     command->callback([o, &action] { action = [o] { return set(*o); }; });
 }

@@ -70,7 +70,7 @@ void print_part(const Json& runtime, const char* name) {
 
 void print_runtime(const Json& runtime) {
     fmt::print("Runtime {} in process {}\n", text_of(runtime, "version"), text_of(runtime, "pid"));
-    for (const char* name : {"application", "device", "hmd", "eye_tracker", "cameras", "clock", "frames", "photometry"})
+    for (const char* name : {"application", "device", "headset", "eye_tracker", "cameras", "clock", "frames", "photometry"})
         print_part(runtime, name);
     for (const Json& effect : runtime.value("effects", Json::array()))
         fmt::print("  {:<12} {} {}: {}\n", text_of(effect, "slot"), text_of(effect, "model"), effect.value("on", false) ? "on" : "off",

@@ -1,5 +1,6 @@
 #include "app/host/host.h"
 
+#include "app/calibration_target.h"
 #include "app/cli/output.h"
 #include "app/display_file.h"
 #include "app/host/display_target.h"
@@ -84,13 +85,12 @@ Result<void> choose_eye_tracker(const Config& config, Clock& clock, Headset& hea
 }
 
 // The person's calibration over whatever eye tracker there is.
-Result<void> calibrate_eye_tracker(const Config& config, Headset& headset) {
+Result<std::shared_ptr<drivers::CalibratedEyes>> calibrate_eye_tracker(const Config& config, Headset& headset) {
     ENTOPTIC_TRY(calibration, read_calibration(config.observer.value));
-    if (calibration.empty()) return {};
     const auto eyes = std::make_shared<drivers::CalibratedEyes>(*headset.eye_tracker, calibration);
     headset.eye_tracker = eyes.get();
     headset.owner = std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<EyeSource>>>(headset.owner, eyes);
-    return {};
+    return eyes;
 }
 
 LayerLuminance luminance_of(const Config& config, const Photometry& panel) {
@@ -129,15 +129,14 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
     ENTOPTIC_TRY(headset, open_headset(config, clock_->now()));
     headset_ = std::move(headset);
     ENTOPTIC_CHECK(choose_eye_tracker(config, *clock_, headset_));
-    ENTOPTIC_CHECK(calibrate_eye_tracker(config, headset_));
+    ENTOPTIC_TRY(eyes, calibrate_eye_tracker(config, headset_));
+    eyes_ = std::move(eyes);
     if (!config.display.value.empty()) {
         ENTOPTIC_TRY(file, find_display_file(config.display.value));
         ENTOPTIC_TRY(photometry, measured_photometry(file));
         headset_.display.photometry = photometry;
     }
     facts_.hmd = headset_.display.name;
-    facts_.eye_tracker_present = headset_.eye_tracker->present();
-    facts_.eye_tracker = headset_.eye_tracker->description();
     facts_.luminance = luminance_of(config, headset_.display.photometry);
     ENTOPTIC_CHECK(open_compositor());
     start_publishing();
@@ -227,6 +226,7 @@ void Host::publish_until_stopped() {
     while (!stop_publishing_.wait_for(lock, look_for_requests_every, [this] { return finished_; })) {
         lock.unlock();
         since_published += look_for_requests_every;
+        answer_key();
         if (adjust() || since_published >= publish_every) {
             publish();
             since_published = {};
@@ -245,6 +245,7 @@ bool Host::adjust() {
     const auto done = apply(**taken);
     facts_.adjusted.id = (*taken)->id;
     facts_.adjusted.error = done ? "" : done.error().message;
+    if (!done || !(*taken)->recentre_gaze) facts_.adjusted.gaze.clear();
     return true;
 }
 
@@ -254,6 +255,11 @@ Result<void> Host::apply(const SettingsRequest& request) {
     all = joined(std::move(all), live);
     ENTOPTIC_TRY(selection,
                  select_effects(all.preset, all.models, all.settings, facts_.config.observer.value, perception::Viewer::wearer));
+    if (request.recentre_gaze) {
+        ENTOPTIC_TRY(gaze, recentre_gaze(request.save_gaze));
+        facts_.adjusted.gaze = std::move(gaze);
+    }
+    if (!request.reset && text_of(request.choice).empty()) return {};
     facts_.selection = selection;
     acuity_simulated_ = selection.find("acuity") != nullptr;
     facts_.adjusted.choice = std::move(live);
@@ -261,8 +267,42 @@ Result<void> Host::apply(const SettingsRequest& request) {
     return {};
 }
 
+Result<std::string> Host::recentre_gaze(bool save) {
+    const std::string& observer = facts_.config.observer.value;
+    if (!eyes_->present()) return missing(fmt::format("There is no eye tracker to re-centre: {}", eyes_->description()));
+    if (save && observer.empty()) return usage_error("There is no observer whose file could keep it. Start the session with --observer NAME.");
+    using drivers::GazeAngles;
+    const auto shifts = eyes_->recentre(clock_->now(), {target_of_eye(headset_, 0, GazeAngles(0)), target_of_eye(headset_, 1, GazeAngles(0))});
+    if (!shifts) return forward_error(shifts.error());
+    std::string text = "Gaze re-centred";
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        const char* side = eye == 0 ? "left" : "right";
+        if (const auto& shift = (*shifts)[eye])
+            text += fmt::format("; {} eye: {:+.2f} degrees to the right, {:+.2f} up", side, shift->x, shift->y);
+        else
+            text += fmt::format("; {} eye: not seen, as before", side);
+    }
+    if (!save) return text + ".";
+    drivers::EyeCalibration kept;
+    kept.gaze = eyes_->calibration().gaze;
+    ENTOPTIC_TRY(path, write_calibration(observer, kept));
+    return fmt::format("{}. Kept in {}.", text, path);
+}
+
+void Host::answer_key() {
+    if (!frames_->take_recentre_wish()) return;
+    const auto done = recentre_gaze(false);
+    if (done)
+        log::info("{}", *done);
+    else
+        log::warn("{}", done.error().message);
+}
+
 SessionFacts Host::facts_now() const {
     SessionFacts facts = facts_;
+    if (headset_.status) facts.headset = headset_.status->status();
+    facts.eye_tracker_present = eyes_->present();
+    facts.eye_tracker = eyes_->description();
     facts.luminance = watch_->luminance().value_or(facts_.luminance);
     return facts;
 }

@@ -5,6 +5,7 @@
 #include "app/host/session_report.h"
 #include "app/status_file.h"
 #include "compositor/service.h"
+#include "drivers/eye_tracking/eye_calibration.h"
 #include "interfaces/runtime_host.h"
 
 #include <array>
@@ -57,6 +58,10 @@ private:
     // Takes and answers a request of `entoptic set`; true when there was one.
     bool adjust();
     Result<void> apply(const SettingsRequest& request);
+    // The wearer looks at the centre now. What has changed, in words.
+    Result<std::string> recentre_gaze(bool save);
+    // The window's key for it.
+    void answer_key();
     SessionFacts facts_now() const;
     std::vector<std::string> errors(const compositor::RunReport& report) const;
     void judge(const compositor::RunReport& report) const;
@@ -66,6 +71,7 @@ private:
     std::unique_ptr<Clock> clock_;
     MonotonicClock stopwatch_;
     Headset headset_;
+    std::shared_ptr<drivers::CalibratedEyes> eyes_;  // the headset's eye tracker
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<compositor::CompositorService> frames_;
     std::unique_ptr<PanelPresence> panel_presence_;

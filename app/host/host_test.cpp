@@ -3,6 +3,7 @@
 #include "app/host/host.h"
 #include "app/host/resolution.h"
 
+#include "app/calibration_target.h"
 #include "app/launch.h"
 
 #include <algorithm>
@@ -161,6 +162,80 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
     EXPECT_EQ(text_of(choose({}, true).choice), "");
     show(**host, 2);
     EXPECT_FALSE(fs::exists(path("entoptic/" + std::to_string(getpid()) + ".set")));
+}
+
+TEST_F(HostTest, RecentresTheGazeOnWhatTheWearerLooksAt) {
+    // A wearer who looks at a point two metres ahead, and a tracker that takes it for one 6 degrees right and 3 down.
+    std::ofstream(path("slipped.toml")) << "version = 1\nname = \"slipped\"\nduration_s = 1\nloop = true\n[gaze]\ndirection_deg = [6, -3]\n";
+    configure({{"script", toml_string(path("slipped.toml"))}, {"ideal_tracker", "true"}, {"observer", "\"70-years\""}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    show(**host, 60);
+    const auto centre_error = [&] {
+        const Observer observer = (*host)->headset().eye_tracker->observer_at((*host)->clock().now());
+        double worst = 0;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            EXPECT_EQ(observer.eyes[eye].gaze_provenance, Provenance::measured);
+            worst = std::max(worst, glm::length(drivers::angles_of(glm::dvec3(observer.eyes[eye].gaze_direction)) -
+                                                target_of_eye((*host)->headset(), eye, drivers::GazeAngles(0))));
+        }
+        return worst;
+    };
+    const auto request = [&](bool save) {
+        static int number = 0;
+        const std::string id = "recentre " + std::to_string(++number);
+        SettingsRequest wish;
+        wish.id = id;
+        wish.recentre_gaze = true;
+        wish.save_gaze = save;
+        EXPECT_TRUE(leave_request(getpid(), wish));
+        for (int i = 0; i < 500; ++i) {
+            for (const RunningRuntime& runtime : running_runtimes())
+                if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        ADD_FAILURE() << "no answer";
+        return SettingsAnswer{};
+    };
+    EXPECT_GT(centre_error(), 6);
+    const SettingsAnswer answer = request(false);
+    EXPECT_EQ(answer.error, "");
+    EXPECT_NE(answer.gaze.find("Gaze re-centred"), std::string::npos) << answer.gaze;
+    EXPECT_LT(centre_error(), 0.05);
+    const std::string file = path("entoptic/observers/70-years.toml");
+    EXPECT_FALSE(fs::exists(file));
+    // Kept: it holds for the next session, too.
+    EXPECT_NE(request(true).gaze.find("70-years.toml"), std::string::npos);
+    std::ifstream kept(file);
+    const std::string text{std::istreambuf_iterator<char>(kept), {}};
+    EXPECT_NE(text.find("age = 70"), std::string::npos) << "it takes the place of the one that comes with the program\n" << text;
+    host->reset();
+    host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    show(**host, 60);
+    EXPECT_LT(centre_error(), 0.05);
+}
+
+TEST_F(HostTest, RecentringWithoutAnEyeTrackerOrAFileIsAnError) {
+    std::ofstream(path("lost.toml")) << "version = 1\nname = \"lost\"\nduration_s = 60\n[lost]\neyes = [[0, 60]]\n";
+    configure({{"script", toml_string(path("lost.toml"))}});
+    auto host = open();
+    ASSERT_TRUE(host) << host.error().message;
+    show(**host, 60);
+    for (const bool save : {false, true}) {
+        SettingsRequest wish;
+        wish.id = save ? "save" : "recentre";
+        wish.recentre_gaze = true;
+        wish.save_gaze = save;
+        EXPECT_TRUE(leave_request(getpid(), wish));
+        std::string error;
+        for (int i = 0; i < 500 && error.empty(); ++i) {
+            for (const RunningRuntime& runtime : running_runtimes())
+                if (const auto answer = answer_of(runtime.status); answer && answer->id == wish.id) error = answer->error;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        EXPECT_NE(error.find(save ? "--observer NAME" : "Neither eye"), std::string::npos) << error;
+    }
 }
 
 TEST(Resolution, IsThatOfShlaersObservers) {

@@ -6,6 +6,7 @@
 #include "compositor/report.h"
 #include "compositor/service.h"
 #include "interfaces/runtime_host.h"
+#include "interfaces/sources.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,8 +19,9 @@ struct SessionFacts {
     ApplicationIdentity application;
     Config config;
     std::string hmd;  // DisplayIdentity::name
-    bool eye_tracker_present = false;
-    std::string eye_tracker;   // what it is, or why it is absent
+    HeadsetStatus headset;             // now
+    bool eye_tracker_present = false;  // now
+    std::string eye_tracker;   // what it is, how it does, or why it is absent
     LayerLuminance luminance;  // for layers that do not say
     perception::Selection selection;
     SettingsAnswer adjusted;  // to the last `entoptic set`

@@ -30,6 +30,8 @@ public:
     virtual Result<void> commit(const PresentState& state) = 0;
     // After a commit() without error: waits until the picture comes to light, where the display tells. Bounded.
     virtual Result<PresentFeedback> wait_shown() { return PresentFeedback{}; }
+    // The user asked to re-centre the gaze since this was asked last; thread-safe.
+    virtual bool take_recentre_wish() { return false; }
     virtual bool close_wanted() const { return false; }  // the user closed it; thread-safe
     virtual bool lit() const { return true; }            // somebody could see it now; thread-safe
     virtual std::string description() const = 0;         // thread-safe; of a display that is away: why

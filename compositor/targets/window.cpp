@@ -24,7 +24,7 @@ namespace entoptic::compositor {
 namespace {
 
 constexpr std::uint32_t largest_window = 1280;  // pixels across, at first
-constexpr xcb_keysym_t key_s = 's', key_q = 'q', key_escape = 0xff1b;
+constexpr xcb_keysym_t key_s = 's', key_c = 'c', key_q = 'q', key_escape = 0xff1b;
 
 xcb_atom_t atom(xcb_connection_t* connection, const char* name) {
     const auto cookie = xcb_intern_atom(connection, 0, static_cast<std::uint16_t>(std::char_traits<char>::length(name)), name);
@@ -55,6 +55,7 @@ public:
 
     Result<void> test(const PresentState& state) override;
     Result<void> commit(const PresentState& state) override;
+    bool take_recentre_wish() override { return recentre_.exchange(false); }
     bool close_wanted() const override { return closed_; }
     std::string description() const override { return "window"; }
 
@@ -83,7 +84,7 @@ private:
     VkSemaphore acquired_ = VK_NULL_HANDLE;
     gpu::Image picture_;  // both eyes side by side
     gpu::Commands commands_;
-    std::atomic<bool> closed_{false};
+    std::atomic<bool> closed_{false}, recentre_{false};
     bool seen_ = false, resized_ = false;
 };
 
@@ -221,6 +222,7 @@ void Window::handle_key(xcb_keycode_t code) {
     const xcb_keysym_t key = known ? xcb_get_keyboard_mapping_keysyms(map)[0] : xcb_keysym_t(XCB_NO_SYMBOL);
     std::free(map);
     if (key == key_s) seen_ = !seen_;
+    if (key == key_c) recentre_ = true;
     if (key == key_q || key == key_escape) closed_ = true;
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 
@@ -41,7 +42,7 @@ struct EyeCalibration {
 };
 
 // `source`, whose answers go through the calibration: filtered gaze and raw samples alike; diameters outside the person's range (by more
-// than a tenth) are brought back to it. `source` must outlive it.
+// than a tenth) are brought back to it. `source` must outlive it. An empty calibration changes nothing.
 class CalibratedEyes final : public EyeSource {
 public:
     CalibratedEyes(EyeSource& source, EyeCalibration calibration) : source_(source), calibration_(std::move(calibration)) {}
@@ -49,13 +50,21 @@ public:
     Observer observer_at(TimeNs time) override;
     std::optional<RawEyeSample> raw_at(int eye, TimeNs time) override;
     bool present() const override { return source_.present(); }
-    std::string description() const override { return source_.description() + "; calibrated"; }
+    std::string description() const override;
+
+    // A tracker that slips on the face is off by about the same angle everywhere. The wearer looks at `targets` (of each eye): what was measured
+    // in the 0.4 s before `now` means these from now on, in the calibrated eyes and in calibration(). Returns how far each eye's gaze has moved by
+    // that, degrees; none for an eye that was not seen. Errors, and nothing changes: neither eye was seen; one moved; one was farther than
+    // 20 degrees off, which is no slip.
+    Result<std::array<std::optional<GazeAngles>, 2>> recentre(TimeNs now, const std::array<GazeAngles, 2>& targets);
+
+    EyeCalibration calibration() const;
 
 private:
-    glm::vec3 mapped(std::size_t eye, glm::vec3 direction) const;
-    float in_range(float diameter_mm) const;
+    Result<std::optional<GazeAngles>> fixation(int eye, TimeNs now) const;
 
     EyeSource& source_;
+    mutable std::mutex mutex_;
     EyeCalibration calibration_;
 };
 

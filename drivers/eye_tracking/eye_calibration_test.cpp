@@ -93,5 +93,105 @@ TEST(EyeCalibration, ASourceGoesThroughIt) {
     EXPECT_NEAR(angles_of(glm::dvec3(calibrated.observer_at(0).eyes[0].gaze_direction)).x, 3, 1e-4);
 }
 
+// A tracker of both eyes, 200 samples a second with noise, that looks at `truth` through seen() and has slipped.
+class SlippingEyes final : public EyeSource {
+public:
+    GazeAngles truth{0}, slip{0};
+    double noise = 0.3;
+    std::array<float, 2> confidence{1, 1};
+    double saccade_at_s = -1;  // from then on it looks 10 degrees farther right
+    Observer observer_at(TimeNs) override {
+        Observer observer;
+        for (EyeState& eye : observer.eyes) {
+            eye.gaze_direction = glm::vec3(direction_of(measured(truth)));
+            eye.gaze_provenance = Provenance::measured;
+        }
+        return observer;
+    }
+    std::optional<RawEyeSample> raw_at(int eye, TimeNs time) override {
+        const TimeNs exposed = time / 5'000'000 * 5'000'000;
+        std::mt19937 random(static_cast<unsigned>(exposed / 5'000'000 * 2 + eye));
+        std::normal_distribution<double> draw(0, noise);
+        GazeAngles at = measured(truth);
+        if (saccade_at_s >= 0 && seconds(exposed) >= saccade_at_s) at.x += 10;
+        at += GazeAngles(draw(random), draw(random));
+        RawEyeSample sample;
+        sample.time = exposed;
+        sample.arrival = exposed;
+        sample.confidence = confidence[static_cast<std::size_t>(eye)];
+        sample.gaze_direction = glm::vec3(direction_of(at));
+        return sample;
+    }
+    bool present() const override { return true; }
+    std::string description() const override { return "slipping"; }
+
+private:
+    GazeAngles measured(GazeAngles a) const {
+        std::mt19937 none;
+        return seen(a, 0, none) + slip;
+    }
+};
+
+double error_deg(CalibratedEyes& eyes, std::size_t eye, GazeAngles truth) {
+    return glm::length(angles_of(glm::dvec3(eyes.observer_at(0).eyes[eye].gaze_direction)) - truth);
+}
+
+TEST(EyeCalibration, RecentringTakesASlipOutEverywhere) {
+    SlippingEyes eyes;
+    EyeCalibration calibration;
+    const auto map = fit_gaze_map(pairs_at(taught, 0.1, 8));
+    ASSERT_TRUE(map);
+    calibration.gaze = {*map, *map};
+    calibration.pupil_range_mm = {2.5, 6};
+    CalibratedEyes calibrated(eyes, calibration);
+    EXPECT_LT(error_deg(calibrated, 0, {0, 0}), 0.2);
+    eyes.slip = {4, -3};
+    const auto shifts = calibrated.recentre(10 * ns_per_s, {GazeAngles(0.9, 0), GazeAngles(-0.9, 0)});
+    ASSERT_TRUE(shifts) << shifts.error().message;
+    // What remains at the centre is the median's noise: 0.3 degrees over the root of 80, times the median's 1.25.
+    EXPECT_LT(error_deg(calibrated, 0, {0.9, 0}), 0.15);
+    EXPECT_LT(error_deg(calibrated, 1, {-0.9, 0}), 0.15);
+    double worst_before = 0, worst = 0;
+    for (const GazeAngles& target : held_out) {
+        eyes.truth = target;
+        worst = std::max(worst, error_deg(calibrated, 1, target + GazeAngles(-0.9, 0)));
+        CalibratedEyes slipped(eyes, calibration);
+        worst_before = std::max(worst_before, error_deg(slipped, 1, target));
+    }
+    EXPECT_GT(worst_before, 3.5);
+    EXPECT_LT(worst, 1) << "a slip shifts what was measured, the map bends it a little";
+    EXPECT_EQ(calibrated.calibration().pupil_range_mm, calibration.pupil_range_mm);
+}
+
+TEST(EyeCalibration, RecentringWithoutACalibrationMakesOne) {
+    SlippingEyes eyes;
+    CalibratedEyes calibrated(eyes, {});
+    EXPECT_EQ(calibrated.description(), "slipping");
+    eyes.confidence[0] = 0.3f;
+    const auto shifts = calibrated.recentre(10 * ns_per_s, {});
+    ASSERT_TRUE(shifts) << shifts.error().message;
+    EXPECT_FALSE((*shifts)[0]) << "that eye was not seen";
+    EXPECT_FALSE(calibrated.calibration().gaze[0]);
+    EXPECT_LT(error_deg(calibrated, 1, {0, 0}), 0.15);
+    EXPECT_EQ(calibrated.description(), "slipping; calibrated");
+}
+
+TEST(EyeCalibration, RecentringWhatIsNoLookAtTheCentreChangesNothing) {
+    const auto refused = [](SlippingEyes& eyes, const char* why) {
+        CalibratedEyes calibrated(eyes, {});
+        const auto shifts = calibrated.recentre(10 * ns_per_s, {});
+        ASSERT_FALSE(shifts) << why;
+        EXPECT_NE(shifts.error().message.find(why), std::string::npos) << shifts.error().message;
+        EXPECT_TRUE(calibrated.calibration().empty());
+    };
+    SlippingEyes moving, closed, far;
+    moving.saccade_at_s = 9.8;
+    closed.confidence = {0.2f, 0.2f};
+    far.slip = {25, 0};
+    refused(moving, "moved");
+    refused(closed, "Neither eye");
+    refused(far, "entoptic calibrate gaze");
+}
+
 }  // namespace
 }  // namespace entoptic::drivers
