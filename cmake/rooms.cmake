@@ -59,10 +59,7 @@ function(entoptic_test file)
 endfunction()
 
 # entoptic_fuzzer(<file_fuzz.cpp> ROOMS <rooms>): a fuzz target and its corpus, the folder tests/fuzz/corpus/<file_fuzz>. As a test it runs
-# over the corpus and some mutations of it; with clang and -DENTOPTIC_FUZZ=ON the program is a libFuzzer one instead:
-#   cmake -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DENTOPTIC_FUZZ=ON -DENTOPTIC_SANITIZE=address,undefined
-#   ninja -C build/fuzz vive_pro_fuzz && build/fuzz/bin/vive_pro_fuzz -max_total_time=600 tests/fuzz/corpus/vive_pro_fuzz
-option(ENTOPTIC_FUZZ "Link fuzz targets with libFuzzer (clang only)" OFF)
+# over the corpus and some mutations of it; with clang and ENTOPTIC_FUZZ (dependencies.cmake; tools/fuzz.sh) it is a libFuzzer program instead.
 function(entoptic_fuzzer file)
   cmake_parse_arguments(ARG "" "" "ROOMS" ${ARGN})
   get_filename_component(name ${file} NAME_WE)

@@ -3,6 +3,7 @@
 # Needs root or sudo only when something is missing.
 #   tools/install-dependencies.sh            install what is missing
 #   tools/install-dependencies.sh --list     print the packages, one a line, and install nothing
+#   tools/install-dependencies.sh --device-tests   also what tools/device_tests.sh needs
 set -eu
 
 packages="
@@ -17,13 +18,17 @@ libhidapi-dev libceres-dev zlib1g-dev
 python3 ca-certificates
 "
 
+device_packages="flex bison bc xz-utils busybox-static xserver-xorg-core x11-xserver-utils"
+
 say() { printf '%s\n' "$*" >&2; }
 
 if [ "${1:-}" = "--list" ]; then
     printf '%s\n' $packages
     exit 0
+elif [ "${1:-}" = "--device-tests" ]; then
+    packages="$packages $device_packages"
 elif [ $# -gt 0 ]; then
-    say "usage: tools/install-dependencies.sh [--list]"
+    say "usage: tools/install-dependencies.sh [--list | --device-tests]"
     exit 2
 fi
 

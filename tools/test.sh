@@ -13,20 +13,6 @@ esac
 
 tools/install-dependencies.sh
 
-status=0
-# run_tests <build folder> <test preset>: stdout ends with ctest's own summary.
-run_tests() {
-    say "Testing preset $2"
-    ctest --preset "$2" --no-tests=error --parallel "${ENTOPTIC_TEST_JOBS:-2}" </dev/null || status=1
-    # A test that skips itself has tested nothing.
-    skipped=$(grep -F '[  SKIPPED ]' "build/$1/Testing/Temporary/LastTest.log" 2>/dev/null | sort -u || true)
-    if [ -n "$skipped" ]; then
-        echo "$skipped"
-        say "These tests skipped themselves, which counts as failing"
-        status=1
-    fi
-}
-
 build ci
 if [ $long = yes ]; then
     build asan

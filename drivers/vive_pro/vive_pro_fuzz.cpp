@@ -1,4 +1,5 @@
-// Every parser of the headset's bytes. The first byte chooses.
+// Every parser of the headset's bytes, its panel's EDID among them. The first byte chooses.
+#include "drivers/display/edid.h"
 #include "drivers/lighthouse/lighthouse_v1.h"
 #include "drivers/vive_pro/vive_pro_calibration.h"
 #include "drivers/vive_pro/vive_pro_tracker.h"
@@ -45,6 +46,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             break;
         case 'j':
             (void)vive_pro::parse_calibration(std::string(rest.begin(), rest.end()));
+            break;
+        case 'e':
+            if (const auto edid = parse_edid(rest)) (void)headset_of_edid(*edid);
             break;
         case 'o': {
             lighthouse::OotxDecoder decoder;
