@@ -28,7 +28,7 @@ private:
 
 // Files in the launcher's folder by which the runtime speaks to `entoptic run`.
 inline constexpr const char* failure_file = "failure";       // why the runtime failed, in words
-inline constexpr const char* progress_file = "status.json";  // what `entoptic status` shows, too
+inline constexpr const char* progress_file = "progress.json";  // the report so far, written anew twice a second
 
 struct Application {
     std::vector<std::string> command;                              // program (looked for in PATH) and arguments

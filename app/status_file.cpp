@@ -31,11 +31,14 @@ Result<void> make_private_folder(const std::string& path) {
 
 bool alive(int pid) { return kill(pid, 0) == 0 || errno == EPERM; }
 
+// The process a file of the folder belongs to: <pid>.json, its unfinished successor <pid>.json.part, a request <pid>.set. 0: no such file.
 int pid_of(const fs::path& path) {
-    const std::string stem = path.stem();
-    if (path.extension() != ".json" || stem.empty() || stem.size() > 9 || stem.find_first_not_of("0123456789") != std::string::npos)
-        return 0;
-    return std::stoi(stem);
+    const std::string name = path.filename();
+    const std::string number = name.substr(0, name.find('.'));
+    const std::string_view rest = std::string_view(name).substr(number.size());
+    if (rest != ".json" && rest != ".json.part" && rest != ".set") return 0;
+    if (number.empty() || number.size() > 9 || number.find_first_not_of("0123456789") != std::string::npos) return 0;
+    return std::stoi(number);
 }
 
 }  // namespace
@@ -81,9 +84,9 @@ std::vector<RunningRuntime> running_runtimes() {
         if (pid <= 0) continue;
         if (!alive(pid)) {
             fs::remove(entry.path(), error);
-            fs::remove(fs::path(entry.path()).replace_extension(".set"), error);
             continue;
         }
+        if (entry.path().extension() != ".json") continue;
         std::ifstream in(entry.path());
         auto status = nlohmann::ordered_json::parse(in, nullptr, false);
         if (status.is_object()) found.push_back({pid, std::move(status)});

@@ -3,6 +3,7 @@
 #include "app/cli/output.h"
 #include "app/config.h"
 #include "app/launch.h"
+#include "app/status_file.h"
 #include "app/observer_file.h"
 #include "app/parse.h"
 #include "drivers/recording/recording.h"
@@ -205,10 +206,13 @@ private:
         if (o_.report || !o_.json) return o_.report;
         return folder_.path() + "/report.json";
     }
+    Json report_so_far() const {
+        const Json report = Json::parse(text_of_file(fs::path(folder_.path()) / progress_file), nullptr, false);
+        return report.is_object() && report.contains("frames") ? report : Json();
+    }
     void show_progress() {
-        const Json status = Json::parse(text_of_file(fs::path(folder_.path()) / progress_file), nullptr, false);
-        if (!status.is_object() || !status.contains("frames")) return;
-        progress_.update(status["frames"].value("displayed", std::uint64_t(0)), o_.frames.value_or(0));
+        const Json so_far = report_so_far();
+        if (so_far.is_object()) progress_.update(so_far["frames"].value("displayed", std::uint64_t(0)), o_.frames.value_or(0));
     }
     int finish(const Ending& ending) {
         const std::string why = text_of_file(fs::path(folder_.path()) / failure_file);
@@ -217,19 +221,30 @@ private:
             fmt::print(stderr, "entoptic: the application was ended by signal {} ({}).\n", ending.status - 128,
                        strsignal(ending.status - 128));
         report(why);
+        (void)running_runtimes();  // removes what an application that was killed left in the folder of running ones
         return why.empty() ? ending.status : exit_runtime_failed;
     }
     void report(const std::string& why) const {
         const auto path = report_path();
         if (!path) return;
         Json report = Json::parse(text_of_file(*path), nullptr, false);
-        if (!report.is_object()) {
-            const std::string error =
-                why.empty() ? "There is no report: the application never used OpenXR, or ended before it could be written." : why;
-            if (why.empty()) fmt::print(stderr, "entoptic: {}\n", error);
-            report = {{"version", ENTOPTIC_VERSION}, {"errors", {error}}};
-        }
+        if (!report.is_object()) report = report_in_its_place(*path, why);
         if (o_.json) print_json(report);
+    }
+    // Of an application that ended before its report was written: what it had done up to half a second before.
+    Json report_in_its_place(const std::string& path, const std::string& why) const {
+        Json report = report_so_far();
+        std::string error = why;
+        if (why.empty()) {
+            error = report.is_object()
+                        ? "The application ended before its report was written: these are the figures up to half a second before."
+                        : "There is no report: the application never used OpenXR, or ended before it could be written.";
+            fmt::print(stderr, "entoptic: {}\n", error);
+        }
+        if (!report.is_object()) return {{"version", ENTOPTIC_VERSION}, {"errors", {error}}};
+        report["errors"].push_back(error);
+        if (const auto written = write_json(path, report); !written) fmt::print(stderr, "entoptic: {}\n", written.error().message);
+        return report;
     }
 
     const Options& o_;

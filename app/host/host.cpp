@@ -10,6 +10,7 @@
 #include "app/observer_calibration.h"
 #include "app/observer_file.h"
 #include "base/log.h"
+#include "compositor/warm_up.h"
 #include "drivers/driver.h"
 
 #include <algorithm>
@@ -147,6 +148,7 @@ Result<void> Host::open_compositor() {
     const Config& config = facts_.config;
     ENTOPTIC_TRY(device, gpu::Device::create({config.vulkan_validation.value, may_be_window(config), config.vulkan_device.value}));
     device_ = std::move(device);
+    ENTOPTIC_CHECK(compositor::warm_up(*device_));  // before set_live_host
     compositor::ServiceOptions options;
     options.path.panel = {static_cast<std::uint32_t>(headset_.display.panel_width),
                           static_cast<std::uint32_t>(headset_.display.panel_height)};
@@ -309,11 +311,13 @@ SessionFacts Host::facts_now() const {
 
 void Host::publish() {
     const compositor::RunReport report = frames_->report();
-    const Json status = status_json(facts_now(), report, frames_->last_outcome(), errors(report));
-    if (const auto published = status_.publish(status); !published) log::debug("{}", published.error().message);
-    if (!facts_.config.launcher_directory.value.empty())
-        if (const auto written = write_json(fmt::format("{}/{}", facts_.config.launcher_directory.value, progress_file), status); !written)
-            log::debug("{}", written.error().message);
+    const SessionFacts facts = facts_now();
+    const std::vector<std::string> all = errors(report);
+    if (const auto published = status_.publish(status_json(facts, report, frames_->last_outcome(), all)); !published)
+        log::debug("{}", published.error().message);
+    if (facts.config.launcher_directory.value.empty()) return;
+    const std::string progress = fmt::format("{}/{}", facts.config.launcher_directory.value, progress_file);
+    if (const auto written = write_json(progress, report_json(facts, report, all)); !written) log::debug("{}", written.error().message);
 }
 
 void Host::finish() {
@@ -330,7 +334,7 @@ void Host::finish() {
     write_report(report);
     judge(report);
     status_ = {};
-    (void)take_request(getpid());   // one that came too late
+    (void)take_request(getpid());  // one that came too late
 }
 
 void Host::write_report(const compositor::RunReport& report) const {
