@@ -189,6 +189,8 @@ public:
 
     Result<int> start() {
         ENTOPTIC_TRY(manifest, find_manifest());
+        std::error_code ignored;
+        if (const auto path = report_path()) fs::remove(*path, ignored);  // an earlier run's must not pass for this one's
         const std::string config = folder_.path() + "/config.toml";
         ENTOPTIC_CHECK(write_overlay(config, {config_file(), folder_.path(), overlay_values(o_, report_path())}));
         const Application application{o_.application, {{"XR_RUNTIME_JSON", manifest}, {"ENTOPTIC_CONFIG", config}}, o_.json};

@@ -51,6 +51,9 @@ XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo* info) {
             ENTOPTIC_XR_TRY(check_time(info->displayTime));
             ENTOPTIC_XR_TRY(check_blend_mode(info->environmentBlendMode));
             submission.display_time = info->displayTime;
+            // A session without graphics has no swapchains that its layers could name, and nothing is composed: they are not looked at, so
+            // that a frame loop written for any session runs in it.
+            if (!session->graphics()) return {};
             return resolve_layers(session, *info, submission.layers);
         });
     });

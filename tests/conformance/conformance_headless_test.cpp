@@ -25,6 +25,14 @@ TEST(Headless, ReachesFocusWithoutAFrame) {
     EXPECT_EQ(xr.xrBeginFrame(session, nullptr), XR_SUCCESS);
     const XrFrameEndInfo end{XR_TYPE_FRAME_END_INFO, nullptr, state.predictedDisplayTime, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 0, nullptr};
     EXPECT_EQ(xr.xrEndFrame(session, &end), XR_SUCCESS);
+    // Layers that such a loop brings name no swapchains: nothing is composed of them, and that is no error.
+    ASSERT_EQ(xr.xrWaitFrame(session, nullptr, &state), XR_SUCCESS);
+    EXPECT_EQ(xr.xrBeginFrame(session, nullptr), XR_SUCCESS);
+    const XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, XR_NULL_HANDLE, 0, nullptr};
+    const auto* layer = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection);
+    const XrFrameEndInfo with_layer{XR_TYPE_FRAME_END_INFO, nullptr, state.predictedDisplayTime, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 1, &layer};
+    EXPECT_EQ(xr.xrEndFrame(session, &with_layer), XR_SUCCESS);
+    EXPECT_TRUE(xr.host->service.last_submission().layers.empty());
     std::uint32_t count = 9;
     EXPECT_EQ(xr.xrEnumerateSwapchainFormats(session, 0, &count, nullptr), XR_SUCCESS);
     EXPECT_EQ(count, 0u);
