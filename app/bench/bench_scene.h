@@ -8,9 +8,13 @@ namespace entoptic::app {
 
 // RGB in cd/m². Every effect of the default preset has something to do in it.
 ImageF bench_scene(int width, int height);
+// What the eye looked at before it: the same from right to left, a tenth as bright.
+ImageF bench_scene_before(int width, int height);
 // How far away it is, metres: a floor from half a metre at the bottom to 20 m at the top.
 ImageF bench_depth(int width, int height);
 // Seen under 104 degrees, as in the headset, on a flat picture.
 EyeGeometry bench_geometry(int width, int height);
+// So many pixels from the middle of the headset's view: 13.85 a degree.
+EyeGeometry headset_patch(int width, int height);
 
 }  // namespace entoptic::app

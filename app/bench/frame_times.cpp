@@ -6,7 +6,7 @@
 #include "drivers/driver.h"
 #include "perception/preset.h"
 
-#include <cstring>
+#include <chrono>
 #include <unistd.h>
 
 namespace entoptic::app {
@@ -14,7 +14,7 @@ namespace {
 
 using namespace compositor;
 
-constexpr int warm_up_frames = 2;
+constexpr int warm_up_frames = 2, least_frames = 3;
 
 void hand_over(gpu::Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to, std::uint32_t from_family,
                std::uint32_t to_family) {
@@ -91,8 +91,8 @@ private:
 
 class FrameBench {
 public:
-    FrameBench(gpu::Device& device, const Headset& headset, int frames)
-        : device_(device), headset_(headset), frames_(frames), pool_(device) {}
+    FrameBench(gpu::Device& device, const Headset& headset, const EffectBenchOptions& options)
+        : device_(device), headset_(headset), o_(options), pool_(device) {}
 
     Result<double> median_ms(const std::string& preset, const ImageF& scene) {
         ENTOPTIC_TRY(selection, perception::select(preset));
@@ -106,7 +106,10 @@ public:
         ENTOPTIC_CHECK(picture.fill(scene));
         const std::vector<Layer> layers{picture.layer(headset_.eyes)};
         std::vector<double> times;
-        for (int i = 0; i < frames_ + warm_up_frames; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        for (int i = 0; i < o_.frames + warm_up_frames; ++i) {
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            if (int(times.size()) >= least_frames && spent.count() > 2 * o_.seconds) break;
             ENTOPTIC_TRY(outcome, path->compose(frame(layers, std::uint64_t(i)), pool_.use(layers)));
             double ms = 0;
             for (const StageMs& stage : outcome.gpu_ms) ms += stage.ms;
@@ -130,29 +133,30 @@ private:
 
     gpu::Device& device_;
     const Headset& headset_;
-    int frames_;
+    const EffectBenchOptions& o_;
     SwapchainPool pool_;
 };
 
 }  // namespace
 
-Result<FrameTimes> frame_times(gpu::Device& device, int width, int height, int frames) {
+Result<FrameTimes> frame_times(gpu::Device& device, const EffectBenchOptions& options) {
     drivers::DriverOptions wanted;
-    wanted.panel_width = width;
-    wanted.panel_height = height;
+    wanted.panel_width = options.width;
+    wanted.panel_height = options.height;
     ENTOPTIC_TRY(headset, drivers::open_headset(wanted));
-    FrameBench bench(device, headset, frames);
-    const ImageF scene = bench_scene(width, height);
+    FrameBench bench(device, headset, options);
+    const ImageF scene = bench_scene(options.width, options.height);
+    const std::size_t total = perception::presets().size() + 1;  // and the default preset with nothing to see
+    std::size_t done = 0;
     FrameTimes times;
-    ENTOPTIC_TRY(off, bench.median_ms("off", scene));
-    times.off_ms = off;
     for (const perception::Preset& preset : perception::presets()) {
-        if (preset.name == "off") continue;
         ENTOPTIC_TRY(ms, bench.median_ms(std::string(preset.name), scene));
-        times.preset_ms[std::string(preset.name)] = ms;
+        (preset.name == "off" ? times.off_ms : times.preset_ms[std::string(preset.name)]) = ms;
+        if (options.progress) options.progress(++done, total);
     }
-    ENTOPTIC_TRY(idle, bench.median_ms(std::string(perception::default_preset), ImageF(width, height, 3, 20.0f)));
+    ENTOPTIC_TRY(idle, bench.median_ms(std::string(perception::default_preset), ImageF(options.width, options.height, 3, 20.0f)));
     times.idle_ms = idle;
+    if (options.progress) options.progress(++done, total);
     return times;
 }
 

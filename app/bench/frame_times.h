@@ -13,7 +13,7 @@ struct FrameTimes {
     double idle_ms = 0;                       // the default preset where there is nothing to see: an even grey within the panel's range
 };
 
-// GPU milliseconds, medians over `frames` frames. `width` x `height`: panel of one eye.
-Result<FrameTimes> frame_times(gpu::Device& device, int width, int height, int frames);
+// GPU milliseconds, medians over `options.frames` frames or as many as there is time for. `options.width` x `options.height`: panel of one eye.
+Result<FrameTimes> frame_times(gpu::Device& device, const EffectBenchOptions& options);
 
 }  // namespace entoptic::app

@@ -1,33 +1,48 @@
 // `entoptic bench`: speed against error on this device.
 #include "app/bench/effect_rows.h"
+#include "app/bench/foveation_rows.h"
 #include "app/bench/frame_times.h"
 #include "app/bench/plot.h"
+#include "app/bench/storage_rows.h"
 #include "app/cli/command.h"
 #include "app/cli/output.h"
 #include "app/parse.h"
 #include "perception/preset.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace entoptic::app {
 namespace {
 
 struct Options {
-    std::string size = "720x800", preset{perception::default_preset}, plot;
+    std::string size = "720x800", preset{perception::default_preset}, plot, only;
     int frames = 30;
     bool quick = false, json = false, progress = false;
 };
+constexpr std::string_view foveation = "foveation", storage = "storage";  // beside the slots, for --only
 constexpr int quick_frames = 8;
+constexpr double row_seconds = 1, quick_row_seconds = 0.3;  // of timed frames
+
+// What was measured.
+struct Measured {
+    std::vector<EffectRow> rows;
+    std::optional<FrameTimes> frame;
+};
 
 Json row_json(const EffectRow& row) {
     return {{"effect", row.effect},
             {"model", row.model},
             {"setting", row.setting},
             {"default", row.is_default},
-            {"time_ms", {{"median", row.time_ms.median}, {"p95", row.time_ms.p95}}},
+            {"chosen", row.is_chosen},
+            {"fastest_unseen", row.is_fastest_unseen},
+            {"time_ms", {{"median", row.time_ms.median}, {"p95", row.time_ms.p95}, {"mean", row.time_ms.mean}}},
             {"error",
              {{"de_itp_p99", row.error.de_itp_p99},
               {"de_itp_mean", row.error.de_itp_mean},
@@ -35,62 +50,124 @@ Json row_json(const EffectRow& row) {
               {"energy", row.error.energy}}}};
 }
 
-Json bench_json(const gpu::Device& device, const Options& o, const std::vector<EffectRow>& rows, const FrameTimes& frame) {
-    Json list = Json::array(), presets = Json::object();
-    for (const EffectRow& row : rows) list.push_back(row_json(row));
-    for (const auto& [name, ms] : frame.preset_ms) presets[name] = ms;
-    return {{"version", ENTOPTIC_VERSION},
-            {"device", fmt::format("{} ({})", device.name(), device.driver())},
-            {"size", o.size},
-            {"rows", list},
-            {"frame", {{"off_ms", frame.off_ms}, {"preset_ms", presets}, {"idle_ms", frame.idle_ms}}}};
+Json bench_json(const gpu::Device& device, const Options& o, const Measured& measured) {
+    Json list = Json::array();
+    for (const EffectRow& row : measured.rows) list.push_back(row_json(row));
+    Json document{{"version", ENTOPTIC_VERSION},
+                  {"device", fmt::format("{} ({})", device.name(), device.driver())},
+                  {"size", o.size},
+                  {"preset", o.preset},
+                  {"rows", list}};
+    if (!measured.frame) return document;
+    Json presets = Json::object();
+    for (const auto& [name, ms] : measured.frame->preset_ms) presets[name] = ms;
+    document["frame"] = {{"off_ms", measured.frame->off_ms}, {"preset_ms", presets}, {"idle_ms", measured.frame->idle_ms}};
+    return document;
 }
 
-void print_table(const gpu::Device& device, const Options& o, const std::vector<EffectRow>& rows, const FrameTimes& frame) {
-    fmt::print("{} ({}), {} an eye\n\n", device.name(), device.driver(), o.size);
-    fmt::print("{:<11} {:<20} {:<20} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10}\n", "effect", "model", "setting", "ms", "ms p95", "dE p99", "dE mean", "max code",
-               "energy");
+void print_rows(const std::vector<EffectRow>& rows) {
+    fmt::print("{:<11} {:<20} {:<24} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10}\n", "effect", "model", "setting", "ms", "ms p95", "dE p99",
+               "dE mean", "max code", "energy");
     for (const EffectRow& r : rows)
-        fmt::print("{:<11} {:<20} {:<20} {:>9.3f} {:>9.3f} {:>9.2g} {:>9.2g} {:>9.2g} {:>10.2g}\n", r.effect, r.model, r.setting, r.time_ms.median,
-                   r.time_ms.p95, r.error.de_itp_p99, r.error.de_itp_mean, r.error.max_code, r.error.energy);
-    fmt::print("\nWhole frame, both eyes: off {:.2f} ms, nothing to see {:.2f} ms", frame.off_ms, frame.idle_ms);
-    for (const auto& [name, ms] : frame.preset_ms) fmt::print(", {} {:.2f} ms", name, ms);
+        fmt::print("{:<11} {:<20} {:<24} {:>9.3f} {:>9.3f} {:>9.2g} {:>9.2g} {:>9.2g} {:>10.2g} {}{}\n", r.effect, r.model, r.setting,
+                   r.typical_ms(), r.time_ms.p95, r.error.de_itp_p99, r.error.de_itp_mean, r.error.max_code, r.error.energy,
+                   r.is_chosen ? " *" : "", r.is_fastest_unseen ? " <" : "");
+    fmt::print(
+        "\n*  what the model does by default    <  of those it may be compared with, the fastest whose error cannot be seen\n"
+        "   (p99 dE_ITP at most 1, mean at most 0.2)\n");
+}
+
+void print_table(const gpu::Device& device, const Options& o, const Measured& measured) {
+    fmt::print("{} ({}), {} an eye\n\n", device.name(), device.driver(), o.size);
+    print_rows(measured.rows);
+    if (!measured.frame) return;
+    fmt::print("\nWhole frame, both eyes: off {:.2f} ms, nothing to see {:.2f} ms", measured.frame->off_ms, measured.frame->idle_ms);
+    for (const auto& [name, ms] : measured.frame->preset_ms) fmt::print(", {} {:.2f} ms", name, ms);
     fmt::print("\n");
 }
 
-// All rows in one picture, and those of each slot in one of its own.
-Result<void> write_plots(const std::string& folder, const std::vector<EffectRow>& rows, const std::string& title) {
-    ENTOPTIC_CHECK(write_plot(folder + "/speed_error.svg", rows, title));
-    std::map<std::string, std::vector<EffectRow>> by_slot;
-    for (const EffectRow& row : rows) by_slot[row.effect].push_back(row);
-    for (const auto& [slot, of_slot] : by_slot)
-        ENTOPTIC_CHECK(write_plot(fmt::format("{}/speed_error_{}.svg", folder, slot), of_slot, fmt::format("{}: {}", slot, title)));
+// What the models do by default in one picture, each slot in one, and each model that has settings to choose from.
+Result<void> write_plots(const std::string& folder, const std::vector<EffectRow>& rows, const std::string& subtitle) {
+    std::map<std::string, std::vector<EffectRow>> plots;
+    for (const EffectRow& row : rows) {
+        const bool is_setting = row.setting != "default";
+        if (!is_setting) plots["speed_error"].push_back(row), plots["speed_error_" + row.effect].push_back(row);
+        plots["speed_error_" + row.effect + "_" + row.model].push_back(row);
+    }
+    for (const auto& [name, shown] : plots)
+        if (shown.size() > 1)
+            ENTOPTIC_CHECK(write_plot(fmt::format("{}/{}.svg", folder, name), shown,
+                                      name == "speed_error"
+                                          ? "Models at their defaults"
+                                          : shown[0].effect + (name.ends_with(shown[0].effect) ? "" : ": " + shown[0].model),
+                                      subtitle));
     return {};
 }
 
-Result<int> bench(const Options& o) {
+Result<EffectBenchOptions> effect_options(const Options& o) {
     const auto size = size_from(o.size);
     if (!size || std::min(size->first, size->second) < 16 || std::max(size->first, size->second) > 4096)
         return usage_error(fmt::format("--size {}: write WIDTHxHEIGHT of one eye, each from 16 to 4096.", o.size));
-    if (!o.plot.empty() && !std::filesystem::is_directory(o.plot))
-        return failure(fmt::format("--plot {}: there is no such folder. Make it first.", o.plot));
-    ENTOPTIC_TRY(device, gpu::Device::create({}));
-    Progress progress("measurements", o.progress);
     EffectBenchOptions options;
     options.preset = o.preset;
     options.all_models = !o.quick;
     options.width = size->first;
     options.height = size->second;
     options.frames = o.quick ? quick_frames : o.frames;
+    options.seconds = o.quick ? quick_row_seconds : row_seconds;
+    if (o.only.empty()) return options;
+    const std::size_t equals = o.only.find('=');
+    options.slot = o.only.substr(0, equals);
+    options.model = equals == std::string::npos ? "" : o.only.substr(equals + 1);
+    if ((options.slot == foveation || options.slot == storage) && options.model.empty()) return options;
+    const auto slots = perception::slots();
+    if (std::find(slots.begin(), slots.end(), options.slot) == slots.end())
+        return usage_error(fmt::format("--only {}: there is no slot '{}'. Slots: {}, {}, {}.", o.only, options.slot, fmt::join(slots, ", "),
+                                       foveation, storage));
+    // Names the models there are.
+    if (!options.model.empty()) ENTOPTIC_CHECK(perception::select(o.preset, {o.only}));
+    return options;
+}
+
+using Rows = Result<std::vector<EffectRow>> (*)(gpu::Device&, const EffectBenchOptions&);
+
+Result<Measured> measure(gpu::Device& device, const Options& o, EffectBenchOptions options) {
+    Measured measured;
+    const auto add = [&](bool wanted, const char* what, Rows rows_of) -> Result<void> {
+        if (!wanted) return {};
+        Progress progress(what, o.progress);
+        options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+        ENTOPTIC_TRY(rows, rows_of(device, options));
+        measured.rows.insert(measured.rows.end(), rows.begin(), rows.end());
+        return {};
+    };
+    const bool all = options.slot.empty();
+    ENTOPTIC_CHECK(add(all || (options.slot != foveation && options.slot != storage), "models and settings", &effect_rows));
+    ENTOPTIC_CHECK(add(all || options.slot == foveation, "foveated images", &foveation_rows));
+    ENTOPTIC_CHECK(add(all || options.slot == storage, "storage formats", &storage_rows));
+    if (!all) return measured;
+    Progress progress("whole frames", o.progress);
     options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    ENTOPTIC_TRY(rows, effect_rows(*device, options));
-    ENTOPTIC_TRY(frame, frame_times(*device, size->first, size->second, options.frames));
+    ENTOPTIC_TRY(frame, frame_times(device, options));
+    measured.frame = frame;
+    return measured;
+}
+
+Result<int> bench(const Options& o) {
+    ENTOPTIC_TRY(options, effect_options(o));
+    ENTOPTIC_CHECK(perception::select(o.preset));
+    if (!o.plot.empty() && !std::filesystem::is_directory(o.plot))
+        return failure(fmt::format("--plot {}: there is no such folder. Make it first.", o.plot));
+    ENTOPTIC_TRY(device, gpu::Device::create({}));
+    ENTOPTIC_TRY(measured, measure(*device, o, options));
     if (!o.plot.empty())
-        ENTOPTIC_CHECK(write_plots(o.plot, rows, fmt::format("{} on {}, {}", o.preset, device->name(), o.size)));
+        ENTOPTIC_CHECK(write_plots(o.plot, measured.rows,
+                                   fmt::format("{} ({}), {} an eye; errors against double precision at 13.85 pixels a degree",
+                                               device->name(), device->driver(), o.size)));
     if (o.json)
-        print_json(bench_json(*device, o, rows, frame));
+        print_json(bench_json(*device, o, measured));
     else
-        print_table(*device, o, rows, frame);
+        print_table(*device, o, measured);
     return 0;
 }
 
@@ -98,13 +175,20 @@ Result<int> bench(const Options& o) {
 
 void add_bench(CLI::App& app, Action& action) {
     auto o = std::make_shared<Options>();
-    CLI::App* c = app.add_subcommand("bench", "Measure speed against error on this device");
+    CLI::App* c =
+        app.add_subcommand("bench",
+                           "Measure speed against error on this device: each model at its default and at the settings that buy time with "
+                           "error, foveated images, whole frames.\n"
+                           "--quick takes one to two minutes on two CPU cores, without it it takes about ten, most of which the "
+                           "double-precision references need;\n"
+                           "a GPU makes the times shorter, not the references. Other programs that run meanwhile make all times longer");
     c->add_flag("--quick", o->quick, "Only the models of the preset, and fewer frames");
+    c->add_option("--only", o->only, "SLOT, SLOT=MODEL, foveation or storage: nothing else is measured");
     c->add_flag("--json", o->json, "One JSON document on standard output");
-    c->add_option("--plot", o->plot, "Folder to draw speed_error.svg and speed_error_SLOT.svg into");
+    c->add_option("--plot", o->plot, "Folder to draw speed_error.svg, speed_error_SLOT.svg and speed_error_SLOT_MODEL.svg into");
     c->add_option("--size", o->size, "Pixels of one eye");
-    c->add_option("--preset", o->preset, "Preset in which the models are measured, one at a time in its slot");
-    c->add_option("--frames", o->frames, "Timed frames a setting")->check(CLI::Range(1, 10000));
+    c->add_option("--preset", o->preset, "Preset whose adaptation and tone the models are shown with, and whose defaults are marked");
+    c->add_option("--frames", o->frames, "Timed frames a setting, at most")->check(CLI::Range(1, 10000));
     c->add_flag("--progress", o->progress, "Tell progress even without a terminal");
     c->callback([o, &action] { action = [o] { return bench(*o); }; });
 }
