@@ -32,7 +32,7 @@ constexpr ParameterInfo parameters[] = {
     {"alpha_floor", "1", 1e-4f, 1, 0.02f, "choice: equation 11 divides by 0 in the dark (trap J15)", "floor of the local adaptation, share of C_max"},
     {"diffusion_deg", "deg", 0, 1, 0.05f, "choice: Jacobs 2015, section 2.4 gives no width (trap J16)", "rms blur of the retina's states after 1 s"},
     {"fovea_sigma_deg", "deg", 1, 60, 15, "choice: Jacobs 2015, section 2.4 gives no width (trap J17)", "fall-off from the gaze of what is shown"},
-    {"resolution", "1", 0.125f, 1, 0.25f, "choice: afterimages are blurry", "resolution of the retina's map over the picture's"},
+    {"resolution", "1", 0.125f, 1, 0.5f, "choice: a quarter can be seen at edges (entoptic bench)", "resolution of the retina's map over the picture's"},
     {"lid_red", "1", 0, 1, 0.056f, "Ando and Kripke 1996", "red light that the closed eyelid lets through"},
     {"lid_green_blue", "1", 0, 1, 0.003f, "Ando and Kripke 1996", "green and blue light that the closed eyelid lets through"},
 };
