@@ -77,3 +77,38 @@ case "$wanted" in
     echo "  $output/jacobs.png"
     ;;
 esac
+
+# Figure 5 of Jacobs 2015: flashes of 1e3 (below) to 1e8 cd/m² for 1/8 s, and what is left of them after some seconds.
+case "$wanted" in
+*" jacobs_figure5 "* | "  ")
+    mkdir -p "$work/flashes"
+    "$programs/entoptic" stimulus flash_series -o "$work/flashes/in_%04d.exr" --size 120x120 --fov 16 --fps 8 --seconds 5 >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    "$programs/entoptic" simulate "$work/flashes/in_%04d.exr" --fps 8 -o "$work/flashes/out_%04d.png" --fov 16 --preset jacobs2015 --model glare=none \
+        --set afterimage.j1=0.1 --adapted-to 100 >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+    for after in 0005:0 0009:0.5 0013:1 0021:2 0037:4; do
+        cp "$work/flashes/out_${after%%:*}.png" "$output/jacobs_figure5_${after#*:}s.png"
+        echo "  $output/jacobs_figure5_${after#*:}s.png"
+    done
+    ;;
+esac
+
+# Figure 5 of Kakimoto 2004: a lamp of two pixels through six apertures.
+case "$wanted" in
+*" kakimoto_figure5 "* | "  ")
+    "$programs/entoptic" stimulus point_light -o "$work/point_%04d.exr" --size 200x200 --fov 14 --fps 1 --seconds 1 >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    aperture() {
+        letter=$1
+        shift
+        "$programs/entoptic" simulate "$work/point_0000.exr" -o "$output/kakimoto_figure5_$letter.png" --fov 14 --preset kakimoto2004 --set glare.wavelengths=16 \
+            --set glare.three_lines=0 --set glare.texel_px=1 "$@" >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+        echo "  $output/kakimoto_figure5_$letter.png"
+    }
+    open="--set glare.lids=0 --set glare.lashes=0"
+    aperture a --pupil 8 --set glare.lid_open=0.5
+    aperture b --pupil 2 --set glare.lid_open=0.5
+    aperture c --pupil 6 --set glare.lid_open=0.5
+    aperture d --pupil 6 $open --set glare.filter_directions=2
+    aperture e --pupil 6 $open --set glare.filter_directions=3
+    aperture f --pupil 6 $open --set glare.blades=6
+    ;;
+esac

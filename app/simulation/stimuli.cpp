@@ -39,6 +39,13 @@ std::vector<Phase> flash_series(const StimulusOptions&) {
     return {{lead_s, even(0)}, {flash_s, bars}, {10, even(0)}};
 }
 
+// A lamp far away (choice: 0.15 degrees across, two pixels of a headset).
+std::vector<Phase> point_light(const StimulusOptions& o) {
+    const double light = o.luminance.value_or(brightest_cd) / o.filter;
+    const Paint lamp = [=](double x, double y) { return grey(std::hypot(x, y) <= 0.075 ? light : 0); };
+    return {{1, lamp}};
+}
+
 // A camera's flash unit: a tube of 2.4 x 1.2 degrees, its glare a hundredth of it and less, just above the fixation target. The photograph
 // was not published; the paper tells of "the very bright bulb of the flash and the dimmer glare surrounding it".
 Paint camera_flash(double tube_cd_m2) {
@@ -163,6 +170,7 @@ const std::vector<StimulusEntry>& stimuli() {
         {"adaptation_colour", "Jacobs 2015, figure 3 (d)", "Coloured quadrants for 8 s, then an even field", &adaptation_colour},
         {"lamp_and_page", "Jacobs 2015, figure 9", "A lamp is fixated, then a page: the gaze moves", &lamp_and_page},
         {"mesopic", "Jacobs 2015, section 4.2", "A colour chart in dim light twice, the second time at --test", &mesopic},
+        {"point_light", "Kakimoto 2004, figure 5", "A disc of 0.15 degrees of --luminance in the dark, to see a glare model by", &point_light},
         {"mesopic_levels", "Jacobs 2015, figure 11", "The colour chart from 10 down to 0.001 cd/m²", &mesopic_levels},
     };
     return table;
