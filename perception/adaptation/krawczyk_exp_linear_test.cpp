@@ -134,6 +134,25 @@ TEST(Adaptation, SettlesInTheTimeOfTheTable) {
     }
 }
 
+// Figure 3 of Luidolt 2020: "fully converged after 2.4 seconds". It names no luminances. With its time constants that is so to a hundredth for
+// every step that ends at 1 cd/m² or above, and from three times as bright or less down to starlight; not for a walk from a lit room into the night.
+TEST(Adaptation, ConvergesInThePapersTimeUnlessItGetsDark) {
+    const auto left = [](double from, double to) { return relative_error(krawczyk_exp_linear::adapted(defaults(), from, to, 2.4), to); };
+    for (double to : {1.0, 30.0, 1e3, 1e6})
+        for (double from : {1e-6, 1e-2, 1.0, 1e4, 1e6}) EXPECT_LT(left(from, to), 0.01) << from << " to " << to;
+    for (double to : {1e-6, 1e-3, 0.01, 0.1}) EXPECT_LT(left(3 * to, to), 0.01) << to;
+    EXPECT_GT(left(100, 0.01), 0.1) << "trap L3: 3.9 s to within a tenth";
+    // And on the GPU, frame by frame, by the preset.
+    const auto picture = [](double y) { return uniform(16, 16, static_cast<float>(y)); };
+    StageRunner runner({rectilinear(16, 16, 60)}, value(select("luidolt2020", {"glare=none", "acuity=none"})));
+    runner.run(picture(300), still_input(1, 0, true));
+    const int frames = static_cast<int>(2.4 * 90);
+    for (int i = 0; i < frames; ++i) runner.run(picture(1), still_input(1, 1.0 / 90, false));
+    const double state = static_cast<double>(runner.stage().view(0).adaptation_cd_m2);
+    EXPECT_NEAR(state, krawczyk_exp_linear::adapted(defaults(), 300, 1, frames / 90.0), 1e-3);
+    EXPECT_NEAR(state, 1, 0.01);
+}
+
 TEST(Adaptation, SmallStepsAreNotLostInDouble) {
     double worst = 0;
     for (const OracleRow& row : oracle("expm1_fp32"))

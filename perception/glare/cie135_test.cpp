@@ -84,7 +84,7 @@ TEST(Cie135, WithinThePanelsWhiteNothingHappens) {
     EXPECT_EQ(0, std::memcmp(out.data.data(), bright.data.data(), out.data.size() * sizeof(float)));
 }
 
-TEST(Cie135, GateIsExactOnBothSides) { expect_exact_gate(model(), 40); }
+TEST(Cie135, GateIsExactOnBothSides) { expect_exact_gate(model()); }
 
 }  // namespace
 }  // namespace entoptic::perception

@@ -377,7 +377,7 @@ TEST(FraunhoferMask, SameEyeSamePicture) {
     EXPECT_EQ(0, std::memcmp(first.data.data(), second.data.data(), first.data.size() * sizeof(float)));
 }
 
-TEST(FraunhoferMask, GateIsExactOnBothSides) { expect_exact_gate(model(), 40); }
+TEST(FraunhoferMask, GateIsExactOnBothSides) { expect_exact_gate(model()); }
 
 }  // namespace
 }  // namespace entoptic::perception

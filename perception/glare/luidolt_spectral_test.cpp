@@ -1,6 +1,7 @@
 // labels: gpu
 #include "perception/glare/glare_testing.h"
 #include "perception/glare/luidolt_spectral_pupil.h"
+#include "perception/testing/gate_sweep.h"
 
 #include "perception/glare/glare_columns.comp.h"
 #include "perception/glare/glare_rows.comp.h"
@@ -619,40 +620,40 @@ TEST(Glare, SamePupilSamePicture) {
 
 // --- the gate ---
 
+// A square that is brighter than the grey around it by a little: the change that the gate allows grows with the contrast.
+ImageF brighter_square(double level, double contrast) {
+    ImageF in = uniform(16, 16, static_cast<float>(level));
+    fill(in, 6, 6, 4, 4, static_cast<float>(level * (1 + contrast)));
+    return in;
+}
+
 TEST(Glare, GateHoldsItsBound) {
-    const EyeGeometry g = rectilinear(64, 64, 60);
+    const EyeGeometry g = rectilinear(16, 16, 15);
     Glare with(g, with_tone({"glare.patches=0"})), without(g, only({"tone=key_reinhard"}));
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> uniform01;
-    int ran = 0, gated = 0;
+    const double some_contrast = std::ldexp(1, -15);
+    with.at(brighter_square(1, some_contrast));
+    ASSERT_TRUE(with.outcome().gated);
+    const double contrast_at_bound = some_contrast * 0.5 / static_cast<double>(with.outcome().bound_codes);
+    GateCount count;
     double worst = 0;
-    for (int i = 0; i < 32; ++i) {
-        // Greys of a contrast about the one at which the gate opens; every fourth a picture far from it.
-        const double level = std::pow(10, -2 + 5 * uniform01(random)), contrast = std::pow(10, -5.5 + 2 * uniform01(random));
-        ImageF in = uniform(64, 64, static_cast<float>(level));
-        if (i % 4 == 0) in = textured(64, 64, level, i % 8 ? 0 : 1e4);
-        else
-            for (std::size_t k = 0; k < in.data.size(); ++k) in.data[k] = static_cast<float>(level * (1 + contrast * uniform01(random)));
-        const ImageF a = with.at(in), b = without.at(in);
-        if (!with.outcome().gated) {
-            ++ran;
-            continue;
-        }
-        ++gated;
+    int scene = 0;
+    for (const double factor : factors_around_bound(120, 3, 0.03)) {
+        const double level = std::pow(10, -2 + scene++ % 6);    // cd/m²
+        const ImageF in = brighter_square(level, factor * contrast_at_bound), a = with.at(in);
+        const bool is_gated = with.outcome().gated;
+        count.add(is_gated, factor);
+        EXPECT_EQ(is_gated, factor < 1) << level << " cd/m², " << factor << " of the bound";
+        if (!is_gated) continue;
         EXPECT_LE(with.outcome().bound_codes, 0.5f);
-        // What the model would have changed: by the reference on a part of the picture, in codes after the tone map.
-        ImageF part(12, 12, 3);
-        for (int y = 0; y < 12; ++y)
-            for (int x = 0; x < 12; ++x)
-                for (int c = 0; c < 3; ++c) part.at(x, y, c) = in.at(x, y, c);
-        const ImageD seen = reference(part, rectilinear(12, 12, 12), defaults(), 1);
-        worst = std::max(worst, summary(code_errors(toned(seen, 1), toned(part, 1))).max);
+        const ImageF b = without.at(in);
         EXPECT_EQ(0, std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)));
+        if (factor < 0.8) continue;
+        // What the model would have changed, by the reference: in codes after the tone map.
+        worst = std::max(worst, summary(code_errors(toned(reference(in, g, defaults(), 1), 1), toned(in, 1))).max);
     }
     ledger(name, "gate", "codes left out max", worst);
     EXPECT_LE(worst, 0.5);
-    EXPECT_GT(ran, 5);
-    EXPECT_GT(gated, 5);
+    count.expect_both_outcomes();
 }
 
 // --- the paper to the letter ---

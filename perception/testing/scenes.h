@@ -75,4 +75,12 @@ template <class T> Image<T> through_lens(Image<T> image, const EyeGeometry& g) {
     return image;
 }
 
+// Whether the lens's rim passes the pixel's middle within a thousandth of a pixel: there float and double may differ in what is shown.
+inline bool is_on_the_rim(const EyeGeometry& g, int x, int y) {
+    constexpr double near = 1e-3;
+    const auto shown = [&](double dx, double dy) { return geometry::geometry_visible(g, {x + 0.5 + dx, y + 0.5 + dy}); };
+    const bool here = shown(0, 0);
+    return shown(near, 0) != here || shown(-near, 0) != here || shown(0, near) != here || shown(0, -near) != here;
+}
+
 }  // namespace entoptic::perception::testing
