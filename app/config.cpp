@@ -99,7 +99,8 @@ bool read_settings(const toml::node& node, const Source& source, Config& c) {
             const auto path = perception::names_file(slot.str(), name.str()) ? value.value_exact<std::string>() : std::nullopt;
             const auto number = value.is_number() ? value.value<double>() : std::nullopt;
             if (!path && (!number || !std::isfinite(*number))) return false;
-            c.settings.push_back({fmt::format("{}.{}={}", slot.str(), name.str(), path ? *path : fmt::format("{}", *number)), source.origin(value)});
+            c.settings.push_back(
+                {fmt::format("{}.{}={}", slot.str(), name.str(), path ? *path : fmt::format("{}", *number)), source.origin(value)});
         }
     }
     return true;
@@ -108,16 +109,17 @@ bool read_luminance(const toml::node& node, const Source& source, Config& c) {
     const auto number = number_in(node, 1e-6, 1e6);
     return number && set(c.luminance, std::optional<double>(number), node, source);
 }
-bool read_stages(const toml::node& node, const Source& source, Config& c) {
+bool read_names(const toml::node& node, const Source& source, const std::vector<std::string>& known,
+                Setting<std::vector<std::string>>& into) {
     const auto* array = node.as_array();
     if (!array) return false;
-    std::vector<std::string> stages;
+    std::vector<std::string> names;
     for (const auto& item : *array) {
         const auto name = item.value_exact<std::string>();
-        if (!name || std::find(dump_stage_names.begin(), dump_stage_names.end(), *name) == dump_stage_names.end()) return false;
-        stages.push_back(*name);
+        if (!name || std::find(known.begin(), known.end(), *name) == known.end()) return false;
+        names.push_back(*name);
     }
-    return set(c.dump_stages, std::move(stages), node, source);
+    return set(into, std::move(names), node, source);
 }
 
 std::string shown(const std::string& text) { return text.empty() ? "(none)" : text; }
@@ -193,10 +195,14 @@ const Key keys[] = {
     {"luminance", "a number from 1e-6 to 1e6", "cd/m² of linear 1 in layers that do not say; default: the panel's white", true,
      read_luminance, [](const Config& c) { return c.luminance.value ? fmt::format("{:g}", *c.luminance.value) : "(the panel's white)"; },
      ENTOPTIC_ORIGIN(luminance)},
+    {"quirks", "an array of \"untyped_arrays\"", "mistakes of the application that the runtime makes up for", true,
+     [](N n, S s, Config& c) { return read_names(n, s, quirk_names, c.quirks); },
+     [](const Config& c) { return shown(fmt::format("{}", fmt::join(c.quirks.value, ", "))); }, ENTOPTIC_ORIGIN(quirks)},
     {"dump.dir", "a folder", "where pictures of every frame are written", false,
      [](N n, S s, Config& c) { return read_text(n, s, c.dump_dir); }, [](const Config& c) { return shown(c.dump_dir.value); },
      ENTOPTIC_ORIGIN(dump_dir)},
-    {"dump.stages", "an array of \"warp\", \"perceive\", \"lens\", \"panel\", \"seen\"", "which pictures", false, read_stages,
+    {"dump.stages", "an array of \"warp\", \"perceive\", \"lens\", \"panel\", \"seen\"", "which pictures", false,
+     [](N n, S s, Config& c) { return read_names(n, s, dump_stage_names, c.dump_stages); },
      [](const Config& c) { return fmt::format("{}", fmt::join(c.dump_stages.value, ", ")); }, ENTOPTIC_ORIGIN(dump_stages)},
     {"dump.every", "a whole number from 1", "dump each so many frames", false,
      [](N n, S s, Config& c) { return read_count(n, s, c.dump_every, 1); },
@@ -282,8 +288,7 @@ bool matches(const toml::node* pattern, const std::string& name) {
     return fnmatch(pattern->value_or(std::string()).c_str(), name.c_str(), 0) == 0;
 }
 
-Result<void> read_profile(const std::string& path, const ApplicationNames& application, Config& config) {
-    ENTOPTIC_TRY(table, parse(path));
+Result<void> read_profile(const toml::table& table, const std::string& path, const ApplicationNames& application, Config& config) {
     const Source source{path, false};
     const auto* match = table["match"].as_table();
     if (!match || match->empty())
@@ -304,7 +309,12 @@ Result<void> read_profiles(const ApplicationNames& application, Config& config) 
     for (const auto& entry : fs::directory_iterator(fs::path(config_folder()) / "applications", error))
         if (entry.path().extension() == ".toml") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    for (const auto& file : files) ENTOPTIC_CHECK(read_profile(file, application, config));
+    for (const BuiltInProfile& profile : built_in_profiles())
+        ENTOPTIC_CHECK(read_profile(toml::parse(profile.toml), fmt::format("built-in profile {}", profile.name), application, config));
+    for (const auto& file : files) {
+        ENTOPTIC_TRY(table, parse(file));
+        ENTOPTIC_CHECK(read_profile(table, file, application, config));
+    }
     return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +25,7 @@ struct Config {
     Setting<std::pair<int, int>> panel{{1440, 1600}};  // pixels of one eye
     Setting<double> eye_scale{1};                      // eye image over panel
     Setting<double> ipd_mm{63};
-    Setting<std::string> display;  // a file in displays/ or a path; empty: a nominal panel
+    Setting<std::string> display;        // a file in displays/ or a path; empty: a nominal panel
     Setting<std::string> clock{"real"};  // real | lockstep
     Setting<std::string> script{"still"};
     Setting<bool> ideal_tracker{false};
@@ -36,6 +37,7 @@ struct Config {
     std::vector<Setting<std::string>> models;    // "glare=none"
     std::vector<Setting<std::string>> settings;  // "glare.k=8"
     Setting<std::optional<double>> luminance;    // cd/m² of linear 1 in layers that do not say
+    Setting<std::vector<std::string>> quirks;    // of quirk_names
     Setting<std::string> dump_dir;               // empty: no dumps
     Setting<std::vector<std::string>> dump_stages{{"panel"}};
     Setting<std::uint64_t> dump_every{1};
@@ -50,6 +52,16 @@ struct Config {
 };
 
 inline const std::vector<std::string> dump_stage_names{"warp", "perceive", "lens", "panel", "seen"};
+
+// Mistakes of applications that can be made up for: interfaces/runtime_host.h, Quirks.
+inline const std::vector<std::string> quirk_names{"untyped_arrays"};
+
+// Profiles of applications that are known to need one; those in applications/*.toml come after them.
+struct BuiltInProfile {
+    const char* name;
+    const char* toml;  // as a file would hold it, with the reason
+};
+std::span<const BuiltInProfile> built_in_profiles();
 
 // Who asks for the configuration: chooses a profile from applications/*.toml.
 struct ApplicationNames {

@@ -107,6 +107,19 @@ TEST_F(Configuration, ProfilesMatchByName) {
     EXPECT_NE(hello.luminance.origin.find("hello.toml:1"), std::string::npos);
 }
 
+TEST_F(Configuration, QuirksComeWithTheProgramOrFromAProfile) {
+    EXPECT_TRUE(loaded(ApplicationNames{"a", "b"}).quirks.value.empty());
+    const Config gxr = loaded(ApplicationNames{"any", "gxr"});
+    EXPECT_EQ(gxr.quirks.value, std::vector<std::string>{"untyped_arrays"});
+    EXPECT_EQ(gxr.quirks.origin, "built-in profile gxr:2");
+    write("applications/strict.toml", "quirks = []\n[match]\nengine = \"gxr\"\n");
+    EXPECT_TRUE(loaded(ApplicationNames{"any", "gxr"}).quirks.value.empty());
+    write("applications/strict.toml", "quirks = [\"no_such\"]\n[match]\nengine = \"gxr\"\n");
+    const auto config = load_config(ApplicationNames{"any", "gxr"});
+    ASSERT_FALSE(config);
+    EXPECT_NE(config.error().message.find("untyped_arrays"), std::string::npos) << config.error().message;
+}
+
 TEST_F(Configuration, AProfileMaySetOnlyWhatBelongsToAnApplication) {
     write("applications/bad.toml", "hmd = \"virtual\"\n[match]\napplication = \"hello*\"\n");
     const auto config = load_config(ApplicationNames{"hello_xr", ""});

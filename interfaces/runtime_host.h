@@ -23,6 +23,12 @@ struct ApplicationIdentity {
     std::vector<std::string> extensions;         // enabled
 };
 
+// Mistakes of an application that the runtime makes up for, from its profile (applications/*.toml). Without them the specification holds.
+struct Quirks {
+    // Elements of an array that a call fills may lack their type: type and next are set instead of refused.
+    bool untyped_arrays = false;
+};
+
 // The services behind one XrInstance.
 class RuntimeHost {
 public:
@@ -42,6 +48,7 @@ public:
     // Half a period of the finest grating that is seen where the left and the right eye look, rad: by the eye in the scene when its acuity is
     // simulated, else by the wearer's own at the panel. Thread-safe.
     virtual std::array<double, 2> resolved_angles_rad() const = 0;
+    virtual Quirks quirks() const { return {}; }
     // A problem the user should know of; goes to the report's `errors` and to the log.
     virtual void report_error(const std::string& message) = 0;
 };

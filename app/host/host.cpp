@@ -195,6 +195,11 @@ std::array<double, 2> Host::resolved_angles_rad() const {
     return angles;
 }
 
+Quirks Host::quirks() const {
+    const auto& names = facts_.config.quirks.value;
+    return {.untyped_arrays = std::find(names.begin(), names.end(), "untyped_arrays") != names.end()};
+}
+
 void Host::report_error(const std::string& message) {
     {
         const std::lock_guard lock(mutex_);

@@ -43,6 +43,7 @@ public:
     LayerLuminance default_luminance() const override { return facts_.luminance; }
     void recommended_eye_size(std::uint32_t& width, std::uint32_t& height) const override;
     std::array<double, 2> resolved_angles_rad() const override;
+    Quirks quirks() const override;
     void report_error(const std::string& message) override;
 
     // Writes the report and takes the status away; once, also when the process exits with the instance still open.

@@ -200,7 +200,8 @@ XrResult XRAPI_CALL locate_views(XrSession handle, const XrViewLocateInfo* info,
         const std::size_t view_total = view_count(info->viewConfigurationType);
         bool fill = false;
         ENTOPTIC_XR_TRY(two_call(capacity, count, views, view_total, fill));
-        for (std::size_t i = 0; fill && i < view_total; ++i) ENTOPTIC_XR_TRY(require(&views[i], XR_TYPE_VIEW, "views"));
+        for (std::size_t i = 0; fill && i < view_total; ++i)
+            ENTOPTIC_XR_TRY(require_element(session->instance(), views[i], XR_TYPE_VIEW, "views"));
         const Space view(session, XR_REFERENCE_SPACE_TYPE_VIEW, {});
         const PoseState head = locate(view, *base, info->displayTime);
         view_state->viewStateFlags = location_flags(head);  // the bits are the same

@@ -112,7 +112,7 @@ XrResult XRAPI_CALL enumerate_view_configuration_views(XrInstance handle, XrSyst
         const std::size_t view_total = view_count(type);
         ENTOPTIC_XR_TRY(two_call(capacity, count, views, view_total, fill));
         if (!fill) return XR_SUCCESS;
-        for (std::size_t i = 0; i < view_total; ++i) ENTOPTIC_XR_TRY(require(&views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW, "views"));
+        for (std::size_t i = 0; i < view_total; ++i) ENTOPTIC_XR_TRY(require_element(*instance, views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW, "views"));
         for (std::size_t i = 0; i < view_total; ++i) {
             const ViewSize size = recommended_view_size(instance->host(), type, i, instance->host().headset());
             views[i].recommendedImageRectWidth = size.width;

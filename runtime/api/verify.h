@@ -61,6 +61,14 @@ template <class Struct> Outcome require(const Struct* structure, XrStructureType
     if (!structure) return invalid("{} is null", name);
     return structure->type == type ? Outcome() : type_error(name, structure->type, type);
 }
+// One of an array that the call fills. An application with the quirk untyped_arrays may have left it as it came.
+template <class Struct> Outcome require_element(Instance& instance, Struct& element, XrStructureType type, const char* name) {
+    if (element.type != type && instance.host().quirks().untyped_arrays) {
+        element.type = type;
+        element.next = nullptr;
+    }
+    return require(&element, type, name);
+}
 // One the caller may leave out.
 template <class Struct> Outcome optional(const Struct* structure, XrStructureType type, const char* name) {
     return structure ? require(structure, type, name) : Outcome();

@@ -104,6 +104,7 @@ public:
         width = 256;
         height = 288;
     }
+    Quirks quirks() const override { return application_quirks; }
     void report_error(const std::string& message) override {
         std::lock_guard lock(mutex_);
         errors.push_back(message);
@@ -139,6 +140,7 @@ public:
     LayerLuminance luminance{129.96f, 0.04f, LuminanceSource::default_sdr};
     ApplicationIdentity application;
     std::vector<std::string> errors;
+    Quirks application_quirks;
     FakeFrameService service;
 };
 

@@ -2,6 +2,9 @@
 // Calls that make no sense: every function with null pointers, stale handles and structures of the wrong type gives a code, never a crash.
 #include "runtime/testing/client.h"
 
+#include <array>
+#include <cstring>
+
 namespace entoptic::runtime::testing {
 namespace {
 
@@ -97,6 +100,25 @@ TEST_F(Hostile, VulkanFunctions) {
     info.vulkanCreateInfo = &vk_info;
     EXPECT_EQ(create(xr.instance, &info, &instance, &result), XR_SUCCESS);
     EXPECT_EQ(result, VK_ERROR_EXTENSION_NOT_PRESENT);
+}
+
+TEST_F(Hostile, UntypedArraysAreRefusedUnlessTheApplicationsProfileSaysSo) {
+    const auto garbage = [] {
+        XrViewConfigurationView view;
+        std::memset(static_cast<void*>(&view), 0x5a, sizeof view);
+        return std::array{view, view};
+    };
+    constexpr auto stereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    std::uint32_t count = 0;
+    auto views = garbage();
+    EXPECT_EQ(xr.xrEnumerateViewConfigurationViews(xr.instance, 1, stereo, 2, &count, views.data()), XR_ERROR_VALIDATION_FAILURE);
+    xr.host->application_quirks.untyped_arrays = true;
+    ASSERT_EQ(xr.xrEnumerateViewConfigurationViews(xr.instance, 1, stereo, 2, &count, views.data()), XR_SUCCESS);
+    for (const XrViewConfigurationView& view : views) {
+        EXPECT_EQ(view.type, XR_TYPE_VIEW_CONFIGURATION_VIEW);
+        EXPECT_EQ(view.next, nullptr) << "what lay there is no chain";
+        EXPECT_EQ(view.recommendedImageRectWidth, 256u);
+    }
 }
 
 TEST_F(Hostile, EventsAreNotLostSilently) {

@@ -49,6 +49,10 @@ def environment(arguments, folder):
     if arguments.core_validation:
         env["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_LUNARG_core_validation"
         env["XR_CORE_VALIDATION_EXPORT_TYPE"] = "text"
+    if arguments.api_dump:
+        env["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_LUNARG_api_dump"
+        env["XR_API_DUMP_EXPORT_TYPE"] = "text"
+        env["XR_API_DUMP_FILE_NAME"] = os.path.join(folder, "calls.txt")
     if arguments.vulkan_validation:
         env["VK_INSTANCE_LAYERS"] = "VK_LAYER_KHRONOS_validation"
         env["VK_LAYER_ENABLES"] = "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"
@@ -99,6 +103,10 @@ def run_once(arguments, folder):
         os.close(writing)
     try:
         check_run(arguments, code, read_output(folder), report_path)
+        if arguments.api_dump:
+            with open(os.path.join(folder, "calls.txt"), encoding="utf-8", errors="replace") as file:
+                dumped = sum("xrEndFrame" in line and "XrResult" in line for line in file)
+            expect(dumped >= arguments.frames, f"the layer dumped {dumped} calls of xrEndFrame")
     except Failure:
         tell_output(folder)
         raise
@@ -191,6 +199,7 @@ def main():
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--expect-effects", choices=["none"])
     parser.add_argument("--core-validation", action="store_true")
+    parser.add_argument("--api-dump", action="store_true", help="under LunarG's layer that writes down every call")
     parser.add_argument("--vulkan-validation", action="store_true", default=os.environ.get("ENTOPTIC_TEST_VALIDATION") == "1")
     parser.add_argument("--sanitize", default="")
     parser.add_argument("--timeout", type=float, default=280)
