@@ -1,7 +1,7 @@
 #!/bin/sh
 # Fuzzes every parser that has a target (*_fuzz.cpp) with libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, one after the other.
 #   tools/fuzz.sh [SECONDS [TARGET...]]     600 seconds each, all targets
-# Starts from the corpus in tests/fuzz/corpus, which it leaves alone; what it finds on the way stays in build/fuzz/corpus, and an input that
+# Starts from the corpus in tests/fuzz/corpus and what earlier runs found (tests/fuzz/found), and leaves them alone; what it finds on the way stays in build/fuzz/corpus, and an input that
 # breaks something in build/fuzz/findings. See tests/fuzz/fuzz.md.
 . "$(dirname "$0")/common.sh"
 
@@ -18,6 +18,7 @@ mkdir -p build/fuzz/findings
 for target in $targets; do
     say "Fuzzing $target for $limit s"
     mkdir -p "build/fuzz/corpus/$target"
+    tar -C "build/fuzz/corpus/$target" -xJf "tests/fuzz/found/$target.tar.xz"
     UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 nice -n 19 "build/fuzz/bin/$target" -max_total_time="$limit" -timeout=20 -rss_limit_mb=3000 \
         -max_len=65536 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" \
         >"build/fuzz/$target.log" 2>&1 || status=1

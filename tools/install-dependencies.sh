@@ -18,7 +18,7 @@ libhidapi-dev libceres-dev zlib1g-dev
 python3 ca-certificates
 "
 
-device_packages="flex bison bc xz-utils busybox-static xserver-xorg-core x11-xserver-utils"
+device_packages="flex bison bc xz-utils busybox-static qemu-system-x86 cpio kmod xserver-xorg-core x11-xserver-utils"
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -4,6 +4,7 @@
 #include "base/image_io.h"
 #include "base/noise.h"
 #include "compositor/targets/kms/testing/wayland_lessor.h"
+#include "drivers/pupil_labs/pupil_labs_device.h"
 #include "drivers/vive_pro/vive_pro_connection.h"
 #include "tests/devices/emulated_eyes.h"
 #include "tests/devices/emulated_vive.h"
@@ -84,7 +85,7 @@ private:
     int input_ = -1;
 };
 
-// What `entoptic status` says of the one runtime that runs; null when none does.
+// What `entoptic status` says of the one runtime that runs; null when none does. Asking takes no virtual time, but a second of the machine's.
 nlohmann::json runtime_status() {
     std::string text;
     FILE* output = popen((command_path() + " status --json 2>/dev/null").c_str(), "r");
@@ -100,6 +101,10 @@ bool plug_in(EmulatedVive& vive) {
                const auto found = drivers::vive_pro::find_headsets(drivers::system_hid_bus());
                return found.size() == 1 && !found[0].light.path.empty() && !found[0].mainboard.path.empty();
            });
+}
+
+bool plug_in(EmulatedEyes& eyes) {
+    return bool(eyes.plug()) && within(10, [] { return drivers::find_eye_cameras(drivers::linux_video_system()).size() == 2; });
 }
 
 // The dumped frame whose codes are exactly what was scanned out; "" for none.
@@ -128,7 +133,7 @@ TEST(Session, HelloXrOnTheViveProsPanelAtItsOwnRate) {
     EmulatedVive vive;
     EmulatedEyes eyes;
     ASSERT_TRUE(plug_in(vive));
-    ASSERT_TRUE(eyes.plug());
+    ASSERT_TRUE(plug_in(eyes));
     constexpr int frames = 20;
     SessionRun run("--hmd vive-pro --target kms --preset off --eye-scale 0.5 --dump " +
                        (fs::temp_directory_path() / "entoptic-dumps").string() + " --dump-stages panel",
@@ -185,30 +190,40 @@ TEST(Session, GoesOnWhenTheWaylandCompositorTakesItsLeaseBackAndGivesItAgain) {
     EXPECT_EQ(server.leases(), 0);
 }
 
+// A headset whose panel has a hundredth of the real one's pixels, for where pictures do not matter: one CPU draws them.
+std::string small_headset() {
+    auto configuration = nlohmann::json::parse(drivers::vive_pro::testing::example_configuration());
+    configuration["device"]["eye_target_width_in_pixels"] = 144;
+    configuration["device"]["eye_target_height_in_pixels"] = 160;
+    return configuration.dump();
+}
+
 // Any of headset and eye cameras goes and comes again, whatever the drivers are just doing. The application never notices more than lost tracking.
 TEST(Session, StaysAliveThroughRandomUnplugs) {
-    EmulatedVive vive;
+    EmulatedVive vive({}, small_headset());
     vive.model.motion = {0.5, 0.3, 0.1};
     EmulatedEyes eyes;
     ASSERT_TRUE(plug_in(vive));
-    ASSERT_TRUE(eyes.plug());
-    SessionRun run("--hmd vive-pro --target headless --preset off --eye-scale 0.1", 0);
+    ASSERT_TRUE(plug_in(eyes));
+    SessionRun run("--hmd vive-pro --target headless --preset off", 0);
     const auto all_there = [&] {
         const auto status = runtime_status();
         if (!status.is_object() || !status["headset"]["present"].get<bool>() || !vive.model.display_on) return false;
         const std::string tracker = status["eye_tracker"]["why"];
         return tracker.find("left: tracked") != std::string::npos && tracker.find("right: tracked") != std::string::npos;
     };
-    ASSERT_TRUE(within(60, all_there)) << run.text("output");
+    ASSERT_TRUE(within(60, all_there, 0.5)) << run.text("output");
     const char* wanted = std::getenv("ENTOPTIC_DEVICE_REPLUGS");
     const int replugs = wanted ? std::atoi(wanted) : 10;
     const auto random = [](int i, std::uint64_t what) { return uniform01(what, static_cast<std::uint64_t>(i)); };
     std::array<int, 4> unplugged{};
+    const TimeNs begun = the_clock.now();
     for (int i = 0; i < replugs; ++i) {
         sleep_s(random(i, 1));
         const auto which = static_cast<std::size_t>(random(i, 2) * 4);
         EmulatedUsb& device = *std::array<EmulatedUsb*, 4>{&vive.unit, &vive.board, &eyes.right, &eyes.left}[which];
         ++unplugged[which];
+        fmt::print(stderr, "{:.1f} s: unplug {} of {}\n", seconds(the_clock.now() - begun), i + 1, replugs);
         device.unplug();
         if (which == 1) vive.model.display_on = false;  // it has no power
         sleep_s(0.5 * random(i, 3));
@@ -217,7 +232,7 @@ TEST(Session, StaysAliveThroughRandomUnplugs) {
         })) << i;
         ASSERT_TRUE(i % 10 != 9 || runtime_status().is_object()) << i << "\n" << run.text("output");
     }
-    EXPECT_TRUE(within(30, all_there)) << runtime_status().dump(2);
+    EXPECT_TRUE(within(30, all_there, 0.5)) << runtime_status().dump(2);
     run.end();
     EXPECT_EQ(run.wait(60), 0) << run.text("output");
     const auto report = run.report();

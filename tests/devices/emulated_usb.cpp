@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -113,6 +115,9 @@ void EmulatedUsb::unplug() {
 InAnswer EmulatedUsb::in_packets(int, std::span<IsoPacket>, TimeNs) { return {InAnswer::Kind::stall, {}, -1}; }
 
 void EmulatedUsb::run() {
+    // It stands for hardware, which does not wait for the one CPU; where that is refused, it does.
+    const sched_param priority{1};
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     for (;;) {
         const TimeNs due = serve(monotonic_now());
         pollfd ready{socket_, POLLIN, 0};

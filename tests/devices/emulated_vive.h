@@ -72,7 +72,9 @@ private:
 // The whole headset, on two ports.
 class EmulatedVive {
 public:
-    explicit EmulatedVive(Tamper tamper = {}) : unit(model, std::move(tamper)), board(model) {}
+    // `configuration` is the JSON text that it holds.
+    explicit EmulatedVive(Tamper tamper = {}, std::string configuration = drivers::vive_pro::testing::example_configuration())
+        : model(std::move(configuration)), unit(model, std::move(tamper)), board(model) {}
     Result<void> plug() {
         ENTOPTIC_CHECK(board.plug(0));
         return unit.plug(1);

@@ -10,11 +10,11 @@ namespace entoptic::devices {
 
 inline void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-// Looks every 10 ms; what it was in the end.
-template <class Condition> bool within(double seconds, Condition condition) {
-    for (int i = 0; i < static_cast<int>(seconds * 100); ++i) {
+// Looks every `step_s` seconds; what it was in the end.
+template <class Condition> bool within(double seconds, Condition condition, double step_s = 0.01) {
+    for (double passed = 0; passed < seconds; passed += step_s) {
         if (condition()) return true;
-        sleep_s(0.01);
+        sleep_s(step_s);
     }
     return condition();
 }

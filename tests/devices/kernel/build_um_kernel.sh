@@ -18,7 +18,7 @@ if [ -n "$wanted" ] && [ "$wanted" != "--path" ]; then
     exit 2
 fi
 
-recipe=$(cat "$here/um.config" "$here/build_um_kernel.sh" | sha256sum | cut -c1-12)
+recipe=$(cat "$here/um.config" "$here/vkms_panel.sh" "$here/build_um_kernel.sh" | sha256sum | cut -c1-12)
 if [ "$wanted" = "--path" ]; then
     kernel=$(ls -t "$cache"/um-*-"$recipe" 2>/dev/null | head -n 1)
     if [ -z "$kernel" ]; then
@@ -56,15 +56,7 @@ dpkg-deb --fsys-tarfile $package\_*.deb | tar -xO ./usr/src/$package.tar.xz | ta
 rm -f $package\_*.deb
 cd $package
 
-# vkms becomes a headset's panel: its connector is a DisplayPort (a virtual one has no EDID), and an EDID given on the kernel's command
-# line (drm.edid_firmware) counts. Otherwise it is Debian's.
-vkms=drivers/gpu/drm/vkms/vkms_output.c
-sed -i -e 's/DRM_MODE_CONNECTOR_VIRTUAL/DRM_MODE_CONNECTOR_DisplayPort/' \
-       -e 's/^\tcount = drm_add_modes_noedid(/\tcount = drm_add_override_edid_modes(connector);\n\tif (count > 0)\n\t\treturn count;\n&/' $vkms
-if [ "$(grep -c -e drm_add_override_edid_modes -e DRM_MODE_CONNECTOR_DisplayPort $vkms)" != 2 ]; then
-    say "$vkms of $version is not the one this script knows how to change."
-    exit 1
-fi
+"$here/vkms_panel.sh" drivers/gpu/drm/vkms/vkms_output.c
 
 out=$work/out
 mkdir -p "$out" "$cache"
