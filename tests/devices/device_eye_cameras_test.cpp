@@ -3,14 +3,17 @@
 #include "base/noise.h"
 #include "drivers/pupil_labs/pupil_labs_device.h"
 #include "drivers/pupil_labs/pupil_labs_tracker.h"
+#include "drivers/uvc_camera/uvc_camera.h"
 #include "drivers/vive_pro/vive_pro_device.h"
 #include "tests/devices/emulated_eyes.h"
 #include "tests/devices/emulated_vive.h"
 #include "tests/devices/test_process.h"
 
+#include <cerrno>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <linux/videodev2.h>
 
 namespace entoptic::devices {
 namespace {
@@ -197,6 +200,54 @@ TEST(EyeCamerasOnTheKernel, UnpluggedAndPluggedInAgain) {
     EXPECT_TRUE(within(5, [&] { return open_files() == files && threads() == tasks; }))
         << open_files() << " files, " << threads() << " threads";
     EXPECT_EQ(tracker->counts(0).camera.lost, 0u);
+}
+
+// The kernel's calls, but that its driver finds no room on the bus for a second camera: the virtual bus counts none.
+class FullBus final : public VideoSystem {
+public:
+    std::vector<std::string> nodes() override { return linux_.nodes(); }
+    int open(const char* path) override { return linux_.open(path); }
+    int close(int fd) override {
+        std::erase(streaming_, fd);
+        return linux_.close(fd);
+    }
+    int ioctl(int fd, unsigned long request, void* argument) override {
+        if (request == VIDIOC_STREAMON) {
+            if (!streaming_.empty()) return errno = ENOSPC, -1;
+            streaming_.push_back(fd);
+        }
+        return linux_.ioctl(fd, request, argument);
+    }
+    void* map(int fd, std::size_t length, std::size_t offset) override { return linux_.map(fd, length, offset); }
+    int unmap(void* address, std::size_t length) override { return linux_.unmap(address, length); }
+    int wait(int fd, int timeout_ms) override { return linux_.wait(fd, timeout_ms); }
+
+private:
+    VideoSystem& linux_ = linux_video_system();
+    std::vector<int> streaming_;  // cameras are opened and closed one at a time
+};
+
+TEST(EyeCamerasOnTheKernel, OnAFullBusTheSecondIsReachedThroughLibusbAtTheSettingThatItNeeds) {
+    EmulatedEyes cameras;
+    ASSERT_TRUE(cameras.plug());
+    ASSERT_TRUE(within(10, [] { return find_eye_cameras(linux_video_system()).size() == 2; }));
+    FullBus bus;
+    PupilLabsOptions options;
+    options.video = &bus;
+    options.bypass = [](const std::string& product, const CameraMode& mode) { return open_uvc_camera(product, mode, the_clock); };
+    PupilLabsTracker tracker(the_clock, options);
+    ASSERT_TRUE(within(10, [&] { return tracker.counts(0).pictures.with_pupil > 50 && tracker.counts(1).pictures.with_pupil > 50; }))
+        << tracker.description();
+    const bool right_by_kernel = cameras.right.alternate == 6;
+    EXPECT_EQ(cameras.right.alternate + cameras.left.alternate, 6 + 2) << "3072 bytes a microframe by the kernel, 256 by libusb";
+    EXPECT_NE(tracker.camera_status(right_by_kernel ? 0 : 1).find("through libusb"), std::string::npos) << tracker.description();
+    for (int eye = 0; eye < 2; ++eye) {
+        const std::vector<TimeNs> times = sample_times(tracker, eye, 2);
+        ASSERT_NEAR(static_cast<double>(times.size()), 400, 3);
+        EXPECT_NEAR(static_cast<double>(times.back() - times.front()) / static_cast<double>(times.size() - 1), 5e6, 3e6 / 400);
+        const EyeCameraCounts counts = tracker.counts(eye);
+        EXPECT_EQ(counts.camera.lost + counts.camera.corrupt + counts.pictures.corrupt, 0u);
+    }
 }
 
 TEST(EyeCamerasOnTheKernel, WithAViveProWithoutALostSampleOrALeak) {

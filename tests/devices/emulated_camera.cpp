@@ -1,6 +1,7 @@
 #include "tests/devices/emulated_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -10,7 +11,13 @@ namespace {
 
 constexpr std::uint16_t vendor = 0x0c45, product_id = 0x64ab;
 constexpr DurationNs microframe = 125'000;
-constexpr std::uint32_t packet_bytes = 3072;  // three transactions of 1024 a microframe
+// Alternate settings 1 to 6: transactions a microframe, and bytes of each (facts/devices.md 3.4).
+struct Alternate {
+    std::uint32_t transactions, bytes;
+};
+constexpr std::array alternates{Alternate{1, 128}, Alternate{1, 256}, Alternate{1, 800}, Alternate{2, 800}, Alternate{3, 800}, Alternate{3, 1024}};
+// What the cameras ask for is the largest of them, whatever their pictures need. (The real ones ask for 3640, which the kernel takes for that.)
+constexpr std::uint32_t largest_payload = 3 * 1024;
 constexpr std::size_t payload_header = 2;
 constexpr std::uint8_t streaming_interface = 1, camera_terminal = 1, processing_unit = 2;
 constexpr std::uint8_t set_cur = 1, get_cur = 0x81, get_min = 0x82, get_max = 0x83, get_res = 0x84, get_len = 0x85, get_info = 0x86,
@@ -64,7 +71,11 @@ UsbDescriptors descriptors(const std::string& product, const std::string& serial
     append(c, control_interface());
     append(c, {9, 4, streaming_interface, 0, 0, 14, 2, 0, 0});
     append(c, streaming_formats(offers));
-    append(c, {9, 4, streaming_interface, 1, 1, 14, 2, 0, 0, 7, 5, 0x81, 5, 0x00, 0x14, 1});  // 3 x 1024 a microframe
+    for (std::size_t i = 0; i < alternates.size(); ++i) {
+        append(c, {9, 4, streaming_interface, static_cast<std::uint8_t>(i + 1), 1, 14, 2, 0, 0, 7, 5, 0x81, 5});
+        append(c, alternates[i].bytes | (alternates[i].transactions - 1) << 11, 2);
+        c.push_back(1);
+    }
     c[2] = static_cast<std::uint8_t>(c.size());
     c[3] = static_cast<std::uint8_t>(c.size() >> 8);
     c[4] = 2;
@@ -92,12 +103,13 @@ void EmulatedCamera::negotiate(std::uint8_t frame, std::uint32_t interval) {
     const CameraOffer& o = offer();
     put(probe_, 4, interval > interval_100ns(60) ? interval_100ns(30) : interval_100ns(o.rate_hz));
     put(probe_, 18, static_cast<std::uint32_t>(o.width * o.height * 2));
-    put(probe_, 22, packet_bytes);
+    put(probe_, 22, largest_payload);
 }
 
 void EmulatedCamera::set_interface(int interface, int alternative) {
     if (interface != streaming_interface) return;
-    streaming_ = alternative != 0;
+    streaming_ = alternative > 0 && alternative <= static_cast<int>(alternates.size());
+    if (streaming_) alternate = alternative;
     if (streaming_) ++starts;
     start_ = monotonic_now();
     microframe_ = next_frame_ = 0;
@@ -168,7 +180,8 @@ bool EmulatedCamera::has_data(TimeNs now) {
 
 // The picture's next piece; of a packet that is lost nothing arrives.
 void EmulatedCamera::put_payload(Bytes& out, IsoPacket& packet) {
-    const std::size_t room = std::min(packet.length, packet_bytes) - payload_header;
+    const Alternate& reserved = alternates[static_cast<std::size_t>(alternate - 1)];
+    const std::size_t room = std::min(packet.length, reserved.transactions * reserved.bytes) - payload_header;
     const std::size_t length = std::min(room, current_.size() - sent_);
     const bool last = sent_ + length == current_.size();
     if (lost_packets > 0) {

@@ -23,6 +23,7 @@ public:
 
     std::atomic<std::int64_t> frames = 0;  // sent, since it was made
     std::atomic<int> starts = 0;           // of its stream
+    std::atomic<int> alternate = 0;        // setting of the streaming interface that the host chose last: how much of the bus it reserved
     std::atomic<int> exposure_100us = 32;  // as the host has set it
     // Faults to order.
     std::atomic<bool> frozen = false;     // sends empty packets only
