@@ -115,8 +115,9 @@ Result<void> write_plot(const std::string& path, const std::vector<EffectRow>& r
                         const std::string& subtitle) {
     Marks marks(rows);
     const std::string drawn = marks.draw();
-    return svg::write_plot_file(path, {title, subtitle, "GPU time, ms", "error, ΔE_ITP (99th percentile; 1 is just noticeable)"}, marks.x(),
-                                marks.y(), drawn);
+    return svg::write_plot_file(path,
+                                {title, subtitle, "GPU time, ms (fastest frame)", "error, ΔE_ITP (99th percentile; 1 is just noticeable)"},
+                                marks.x(), marks.y(), drawn);
 }
 
 }  // namespace entoptic::app
