@@ -190,9 +190,9 @@ void add_bench(CLI::App& app, Action& action) {
         app.add_subcommand("bench",
                            "Measure speed against error on this device: each model at its default and at the settings that buy time with "
                            "error, foveated images, whole frames.\n"
-                           "--quick takes one to two minutes on two CPU cores, without it it takes about ten, most of which the "
-                           "double-precision references need;\n"
-                           "a GPU makes the times shorter, not the references. Other programs that run meanwhile make all times longer");
+                           "--quick needs about two minutes of processor time, without it some ten, most of it for the double-precision "
+                           "references: on two idle cores half of\n"
+                           "that. Other programs that run meanwhile make it longer, and the times worse");
     c->add_flag("--quick", o->quick, "Only the models of the preset, and fewer frames");
     c->add_option("--only", o->only, "SLOT, SLOT=MODEL, foveation or storage: nothing else is measured");
     c->add_flag("--json", o->json, "One JSON document on standard output");
