@@ -110,8 +110,8 @@ CopiedImage::CopiedImage(std::shared_ptr<CopyDevice> device, const ImageMemory& 
 }
 
 CopiedImage::~CopiedImage() {
-    static_cast<void>(wait().code());
     const VkDevice device = device_->device();
+    if (pending_) vkWaitForFences(device, 1, &sent_, VK_TRUE, UINT64_MAX);
     if (sent_) vkDestroyFence(device, sent_, nullptr);
     if (commands_) vkFreeCommandBuffers(device, device_->pool(), 1, &commands_);
     if (buffer_) vkDestroyBuffer(device, buffer_, nullptr);

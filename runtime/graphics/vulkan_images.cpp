@@ -4,17 +4,12 @@
 
 namespace entoptic::runtime::graphics {
 
-namespace {
-
-constexpr std::uint64_t longest_gpu_wait_ns = 20'000'000'000;
-
-}  // namespace
-
 VulkanImages::~VulkanImages() {
     const DeviceDispatch& vk = context_->functions;
     for (const auto& image : images_) {
-        static_cast<void>(wait(image->acquired, image->acquired_pending).code());
-        static_cast<void>(wait(image->released, image->released_pending).code());
+        // However long it takes: what the GPU still draws into must not be freed. A GPU that hangs ends the wait as a lost device.
+        static_cast<void>(wait(image->acquired, image->acquired_pending, UINT64_MAX).code());
+        static_cast<void>(wait(image->released, image->released_pending, UINT64_MAX).code());
         if (image->acquired) vk.DestroyFence(context_->device, image->acquired, nullptr);
         if (image->released) vk.DestroyFence(context_->device, image->released, nullptr);
         if (image->image) vk.DestroyImage(context_->device, image->image, nullptr);
@@ -116,9 +111,9 @@ Outcome VulkanImages::submit(VkCommandBuffer commands, VkFence fence, bool& pend
     return XR_SUCCESS;
 }
 
-Outcome VulkanImages::wait(VkFence fence, bool& pending) {
+Outcome VulkanImages::wait(VkFence fence, bool& pending, std::uint64_t longest_ns) {
     if (!pending) return XR_SUCCESS;
-    const VkResult result = context_->functions.WaitForFences(context_->device, 1, &fence, VK_TRUE, longest_gpu_wait_ns);
+    const VkResult result = context_->functions.WaitForFences(context_->device, 1, &fence, VK_TRUE, longest_ns);
     if (result != VK_SUCCESS) return failed("the wait for the application's GPU work", result);
     pending = false;
     return XR_SUCCESS;

@@ -42,7 +42,8 @@ private:
     Outcome make_commands(const ImageMemory& description);
     Outcome record(VkCommandBuffer commands, const VkImageMemoryBarrier& barrier);
     Outcome submit(VkCommandBuffer commands, VkFence fence, bool& pending);
-    Outcome wait(VkFence fence, bool& pending);
+    static constexpr std::uint64_t longest_gpu_wait_ns = 20'000'000'000;
+    Outcome wait(VkFence fence, bool& pending, std::uint64_t longest_ns = longest_gpu_wait_ns);
 
     std::shared_ptr<VulkanContext> context_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
