@@ -185,10 +185,33 @@ Result<void> export_csv(const drivers::RecordedSession& session, const std::stri
     return write_text(prefix + "_head.csv", head);
 }
 
+// ---- Pictures ----------------------------------------------------------------------------------------------------------------------------
+
+Result<void> export_pictures(const drivers::RecordedSession& session, const std::string& prefix) {
+    if (session.pictures.empty())
+        return failure(
+            "The recording holds no pictures of eye cameras. They are recorded from real cameras, unless with --no-eye-pictures.");
+    std::string list = "file,eye,time_s,arrival_s,sequence,camera\n";
+    for (std::size_t i = 0; i < session.pictures.size(); ++i) {
+        const auto& [arrival, picture] = session.pictures[i];
+        const char* side = picture.eye == 0 ? "left" : "right";
+        const std::string path = fmt::format("{}_{:06}_{}.jpg", prefix, i, side);
+        std::ofstream out(path, std::ios::binary);
+        out.write(reinterpret_cast<const char*>(picture.jpeg.data()), static_cast<std::streamsize>(picture.jpeg.size()));
+        out.close();
+        if (!out) return failure(fmt::format("{} cannot be written. Choose another place with -o.", path));
+        list += fmt::format("{},{},{:.6f},{:.6f},{},{}\n", std::filesystem::path(path).filename().string(), side,
+                            seconds(picture.time - session.start), seconds(arrival - session.start), picture.sequence, picture.product);
+    }
+    return write_text(prefix + "_pictures.csv", list);
+}
+
 Result<int> run_export(const ExportOptions& o) {
     ENTOPTIC_TRY(session, drivers::load_session(o.file));
     const std::string prefix = o.output.empty() ? std::filesystem::path(o.file).replace_extension().string() : o.output;
-    ENTOPTIC_CHECK(o.format == "bids" ? export_bids(session, prefix) : export_csv(session, prefix));
+    ENTOPTIC_CHECK(o.format == "bids"       ? export_bids(session, prefix)
+                   : o.format == "pictures" ? export_pictures(session, prefix)
+                                            : export_csv(session, prefix));
     if (session.lost_bytes > 0)
         fmt::print(stderr, "entoptic: the recording was cut short; what came before its last {} bytes was exported.\n", session.lost_bytes);
     return 0;
@@ -201,7 +224,9 @@ void add_export(CLI::App& app, Action& action) {
     CLI::App* c = app.add_subcommand("export", "Write a recording as tables: BIDS (TSV and JSON) or CSV, with units");
     c->add_option("file", o->file, "The recording")->required();
     c->add_option("-o", o->output, "Beginning of the files' names: sub-01_task-driving; default: the recording's");
-    c->add_option("--format", o->format, "bids: eye tracking (physio) and motion; or csv")->check(CLI::IsMember({"bids", "csv"}));
+    c->add_option("--format", o->format,
+                  "bids: eye tracking (physio) and motion; csv; or pictures: the eye cameras', for `entoptic eye detect`")
+        ->check(CLI::IsMember({"bids", "csv", "pictures"}));
     c->callback([o, &action] { action = [o] { return run_export(*o); }; });
 }
 

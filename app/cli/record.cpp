@@ -2,6 +2,7 @@
 #include "app/cli/command.h"
 #include "app/cli/output.h"
 #include "drivers/driver.h"
+#include "drivers/pupil_labs/pupil_labs_device.h"
 #include "drivers/recording/recorded_samples.h"
 #include "drivers/recording/recording.h"
 #include "drivers/vive_pro/vive_pro_device.h"
@@ -21,7 +22,7 @@ using drivers::Stream;
 struct RecordOptions {
     std::string file, hmd = "virtual", script = "still", clock = "real", eye_tracker = "auto";
     double seconds = 10, rate_hz = 250;
-    bool progress = false;
+    bool progress = false, no_eye_pictures = false;
 };
 
 std::atomic<bool> interrupted = false;
@@ -55,6 +56,21 @@ Result<Session> open_virtual(const RecordOptions& o, TimeNs start) {
     return Session{headset, described(headset, o), nullptr};
 }
 
+// The eye cameras with their pictures, or another tracker that was named.
+Result<std::shared_ptr<EyeSource>> open_eyes(const RecordOptions& o, Clock& clock,
+                                             const std::shared_ptr<std::atomic<RecordingWriter*>>& writer) {
+    const bool cameras = o.eye_tracker == "auto" || o.eye_tracker == drivers::pupil_labs_driver.name;
+    if (!cameras || o.no_eye_pictures) return drivers::open_eye_tracker(o.eye_tracker, clock);
+    return drivers::open_eye_cameras(clock, [writer](int eye, const std::string& product, const drivers::CameraMode& mode,
+                                                     const drivers::CompressedFrame& frame, TimeNs arrival) {
+        RecordingWriter* to = writer->load();
+        if (!to) return;
+        to->add(Stream::eye_picture, arrival,
+                drivers::encode_eye_picture(
+                    {eye, product, mode.width, mode.height, frame.time, frame.sequence, {frame.bytes.begin(), frame.bytes.end()}}));
+    });
+}
+
 // `writer` is filled in once the headset has said what it is; reports before that are left out.
 Result<Session> open_vive(const RecordOptions& o, Clock& clock, const std::shared_ptr<std::atomic<RecordingWriter*>>& writer) {
     const auto tap = [writer](drivers::vive_pro::Source source, drivers::vive_pro::Bytes report, TimeNs arrival) {
@@ -68,7 +84,7 @@ Result<Session> open_vive(const RecordOptions& o, Clock& clock, const std::share
     const std::shared_ptr<drivers::vive_pro::Device> shared = std::move(device);
     Session session{drivers::vive_pro::headset_of(shared, shared->ipd_mm(300'000'000)), {}, nullptr};
     if (o.eye_tracker != "none") {
-        auto eyes = drivers::open_eye_tracker(o.eye_tracker, clock);
+        auto eyes = open_eyes(o, clock, writer);
         if (eyes) {
             session.cameras = *eyes;
             session.headset.eye_tracker = eyes->get();
@@ -169,6 +185,8 @@ void add_record(CLI::App& app, Action& action) {
     c->add_option("--rate", o->rate_hz, "Poses a second (a Vive Pro's reports are kept whole besides)")->check(CLI::Range(1.0, 1000.0));
     c->add_option("--clock", o->clock, "real, or lockstep: as fast as it goes, the same bits every time")
         ->check(CLI::IsMember({"real", "lockstep"}));
+    c->add_flag("--no-eye-pictures", o->no_eye_pictures,
+                "Leave the eye cameras' pictures out (some 2 MB a second); samples are recorded anyway");
     c->add_flag("--progress", o->progress, "Tell progress even without a terminal");
     c->callback([o, &action] { action = [o] { return record(*o); }; });
 }

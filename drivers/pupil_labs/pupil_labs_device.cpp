@@ -1,18 +1,20 @@
 #include "drivers/pupil_labs/pupil_labs_device.h"
 
-#include "drivers/pupil_labs/pupil_labs_tracker.h"
 #include "drivers/uvc_camera/uvc_camera.h"
 
 namespace entoptic::drivers {
 
-namespace {
-
-Result<std::shared_ptr<EyeSource>> open_eyes(Clock& clock) {
+Result<std::shared_ptr<EyeSource>> open_eye_cameras(Clock& clock, PictureTap tap) {
     if (find_eye_cameras(linux_video_system()).empty()) return missing(no_eye_cameras());
     PupilLabsOptions options;
     options.bypass = [&clock](const std::string& product, const CameraMode& mode) { return open_uvc_camera(product, mode, clock); };
+    options.tap = std::move(tap);
     return std::make_shared<PupilLabsTracker>(clock, std::move(options));
 }
+
+namespace {
+
+Result<std::shared_ptr<EyeSource>> open_eyes(Clock& clock) { return open_eye_cameras(clock, {}); }
 
 }  // namespace
 

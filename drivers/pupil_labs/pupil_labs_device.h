@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/driver.h"
+#include "drivers/pupil_labs/pupil_labs_tracker.h"
 #include "drivers/v4l2_camera/v4l2_camera.h"
 
 #include <string>
@@ -10,6 +11,9 @@
 namespace entoptic::drivers {
 
 extern const Driver pupil_labs_driver;
+
+// The driver's tracker with a tap on its pictures (empty: none). missing: there are no cameras, and what to do.
+Result<std::shared_ptr<EyeSource>> open_eye_cameras(Clock& clock, PictureTap tap);
 
 // One camera of theirs that is plugged in, for `entoptic status`.
 struct EyeCameraNode {

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <gtest/gtest.h>
 #include <linux/v4l2-controls.h>
+#include <mutex>
 
 namespace entoptic::drivers {
 namespace {
@@ -168,6 +169,27 @@ TEST_F(Tracker, BothEyesAreMeasured) {
     const std::lock_guard lock(system.mutex);
     EXPECT_EQ(camera("/dev/video0").controls[V4L2_CID_EXPOSURE_AUTO], V4L2_EXPOSURE_MANUAL);
     EXPECT_EQ(camera("/dev/video0").controls[V4L2_CID_EXPOSURE_AUTO_PRIORITY], 0);
+}
+
+TEST_F(Tracker, ATapHearsEveryPictureAsItCame) {
+    std::mutex mutex;
+    std::array<std::vector<std::vector<std::uint8_t>>, 2> heard;
+    PupilLabsOptions o = options();
+    o.tap = [&](int eye, const std::string& product, const CameraMode& mode, const CompressedFrame& frame, TimeNs arrival) {
+        const std::lock_guard lock(mutex);
+        heard[static_cast<std::size_t>(eye)].emplace_back(frame.bytes.begin(), frame.bytes.end());
+        EXPECT_EQ(product, eye == 0 ? "Pupil Cam3 ID1" : "Pupil Cam3 ID0");
+        EXPECT_EQ(mode.width, 192);
+        EXPECT_LE(frame.time, arrival);
+    };
+    {
+        PupilLabsTracker tracker(clock, o);
+        EXPECT_TRUE(soon([&] { return tracker.counts(0).pictures.pictures >= 30 && tracker.counts(1).pictures.pictures >= 30; }));
+    }
+    for (const auto& pictures : heard) {
+        ASSERT_GE(pictures.size(), 30u);
+        for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(pictures[i], eye_pictures()[i % 24]) << i;
+    }
 }
 
 TEST_F(Tracker, UnpluggedAndPluggedInAgainItGoesOn) {

@@ -144,6 +144,7 @@ CameraError PupilLabsTracker::stream(int eye, FrameStream& camera) {
             continue;
         }
         newest_picture = clock_.now();
+        if (options_.tap) options_.tap(eye, product, camera.mode(), **frame, newest_picture);
         if (const auto sample = processor.process(**frame, newest_picture)) give(eye, *sample);
         publish(eye, camera, processor);
         if (processor.striped_in_a_row() >= most_striped)

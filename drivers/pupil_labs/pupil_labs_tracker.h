@@ -20,11 +20,16 @@ namespace entoptic::drivers {
 // How to reach a camera that the kernel's driver cannot open for want of room on the bus.
 using BypassCamera = std::function<CameraResult<std::unique_ptr<FrameStream>>(const std::string& product, const CameraMode& mode)>;
 
+// Hears of every picture before anything looks at it, on its camera's thread; `arrival` is the tracker's clock.
+using PictureTap =
+    std::function<void(int eye, const std::string& product, const CameraMode& mode, const CompressedFrame& frame, TimeNs arrival)>;
+
 struct PupilLabsOptions {
     CameraMode mode{192, 192, 200};
     EyeFilterParameters filter;
     VideoSystem* video = nullptr;  // null: the machine's own
     BypassCamera bypass;           // empty: none
+    PictureTap tap;                // empty: none
     DurationNs retry = 1'000'000'000;
 };
 

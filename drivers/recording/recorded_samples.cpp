@@ -14,6 +14,10 @@ public:
     void u32(std::uint32_t value) {
         for (int i = 0; i < 4; ++i) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
     }
+    void u16(std::uint16_t value) {
+        for (int i = 0; i < 2; ++i) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+    }
+    void bytes(std::span<const std::uint8_t> given) { bytes_.insert(bytes_.end(), given.begin(), given.end()); }
     void number(float value) { u32(std::bit_cast<std::uint32_t>(value)); }
     void vector(glm::vec3 v) {
         number(v.x);
@@ -31,6 +35,8 @@ public:
     explicit In(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
     std::uint64_t u64() { return get(8); }
     std::uint32_t u32() { return static_cast<std::uint32_t>(get(4)); }
+    std::uint16_t u16() { return static_cast<std::uint16_t>(get(2)); }
+    std::span<const std::uint8_t> rest() const { return bytes_.subspan(at_); }
     float number() { return std::bit_cast<float>(u32()); }
     glm::vec3 vector() {
         const float x = number(), y = number(), z = number();
@@ -114,6 +120,41 @@ std::optional<RecordedEye> decode_eye(std::span<const std::uint8_t> payload) {
     out.sample.gaze_direction = in.vector();
     out.sample.pupil_diameter_mm = in.number();
     out.sample.confidence = in.number();
+    return out;
+}
+
+// eye, time, sequence, width, height, length of the name, name, picture.
+constexpr std::size_t picture_head_bytes = 4 + 8 + 4 + 2 + 2 + 2, longest_product = 255;
+
+Payload encode_eye_picture(const EyePicture& picture) {
+    Out out;
+    out.u32(static_cast<std::uint32_t>(picture.eye));
+    out.u64(static_cast<std::uint64_t>(picture.time));
+    out.u32(picture.sequence);
+    out.u16(static_cast<std::uint16_t>(picture.width));
+    out.u16(static_cast<std::uint16_t>(picture.height));
+    const std::string name = picture.product.substr(0, longest_product);
+    out.u16(static_cast<std::uint16_t>(name.size()));
+    out.bytes({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
+    out.bytes(picture.jpeg);
+    return out.take();
+}
+
+std::optional<EyePicture> decode_eye_picture(std::span<const std::uint8_t> payload) {
+    if (payload.size() < picture_head_bytes) return std::nullopt;
+    In in(payload);
+    EyePicture out;
+    const std::uint32_t eye = in.u32();
+    out.eye = static_cast<int>(eye);
+    out.time = static_cast<TimeNs>(in.u64());
+    out.sequence = in.u32();
+    out.width = in.u16();
+    out.height = in.u16();
+    const std::size_t name = in.u16();
+    const auto rest = in.rest();
+    if (eye > 1 || out.width == 0 || out.height == 0 || name > longest_product || name > rest.size()) return std::nullopt;
+    out.product.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(name));
+    out.jpeg.assign(rest.begin() + static_cast<std::ptrdiff_t>(name), rest.end());
     return out;
 }
 

@@ -21,6 +21,7 @@ enum class Stream : std::uint16_t {
     eye = 2,          // raw sample of an eye tracker
     vive_report = 3,  // one byte source, then the report as it was read
     event = 4,        // JSON: something happened
+    eye_picture = 5,  // one picture of an eye camera as it came (recorded_samples.h)
 };
 
 struct Record {

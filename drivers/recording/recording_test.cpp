@@ -133,6 +133,27 @@ TEST(RecordedSamples, ComeBack) {
     EXPECT_TRUE(std::isnan(eye->sample.pupil_diameter_mm));
 }
 
+TEST(RecordedSamples, PicturesComeBackAsTheyWere) {
+    const EyePicture picture{1, "Pupil Cam2 ID0", 192, 192, -7, 42, {0xff, 0xd8, 0, 1, 2}};
+    const Payload payload = encode_eye_picture(picture);
+    const auto back = decode_eye_picture(payload);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->eye, 1);
+    EXPECT_EQ(back->product, picture.product);
+    EXPECT_EQ(back->width, 192);
+    EXPECT_EQ(back->time, -7);
+    EXPECT_EQ(back->sequence, 42u);
+    EXPECT_EQ(back->jpeg, picture.jpeg);
+    for (std::size_t length = 0; length < payload.size() - picture.jpeg.size(); ++length)
+        EXPECT_FALSE(decode_eye_picture(std::span(payload).first(length))) << "cut before the picture";
+    EyePicture wrong = picture;
+    wrong.eye = 2;
+    EXPECT_FALSE(decode_eye_picture(encode_eye_picture(wrong)));
+    wrong = picture;
+    wrong.height = 0;
+    EXPECT_FALSE(decode_eye_picture(encode_eye_picture(wrong)));
+}
+
 TEST(RecordedSamples, WrongPayloadsAreNone) {
     Payload pose = encode_pose(1, {}), eye = encode_eye(0, {});
     for (std::size_t length = 0; length < pose.size(); ++length) EXPECT_FALSE(decode_pose(std::span(pose).first(length)));

@@ -70,6 +70,11 @@ void take(Record record, RecordedSession& out) {
         if (!sound) ++out.malformed;
     } else if (record.stream == Stream::vive_report) {
         out.reports.push_back(std::move(record));
+    } else if (record.stream == Stream::eye_picture) {
+        auto picture = decode_eye_picture(record.payload);
+        const bool sound = picture && possible(picture->time);
+        if (sound) out.pictures.push_back({record.time, std::move(*picture)});
+        if (!sound) ++out.malformed;
     } else if (record.stream == Stream::event) {
         out.events.push_back(std::move(record));
     }  // streams of later versions are none of ours
@@ -108,6 +113,8 @@ Result<RecordedSession> load_session(const std::string& path) {
     std::stable_sort(out.eyes.begin(), out.eyes.end(),
                      [](const RecordedEye& a, const RecordedEye& b) { return a.sample.arrival < b.sample.arrival; });
     std::stable_sort(out.reports.begin(), out.reports.end(), [](const Record& a, const Record& b) { return a.time < b.time; });
+    std::stable_sort(out.pictures.begin(), out.pictures.end(),
+                     [](const RecordedPicture& a, const RecordedPicture& b) { return a.arrival < b.arrival; });
     out.lost_bytes = reader.lost_bytes();
     return out;
 }
@@ -167,7 +174,22 @@ EyeFilterParameters parameters_for(const std::array<Fov, 2>& limits) {
 ReplayEyes::ReplayEyes(const RecordedSession& session, const std::array<Fov, 2>& limits, DurationNs shift)
     : session_(session), shift_(shift), filter_(parameters_for(limits)) {}
 
+void ReplayEyes::look_at(const RecordedPicture& recorded) {
+    const EyePicture& p = recorded.picture;
+    auto& processor = processors_[static_cast<std::size_t>(p.eye)];
+    if (!processor) processor.emplace(p.eye, pupil_labs_camera(p.product, p.width, p.height));
+    auto sample = processor->process({p.jpeg, p.time, p.sequence}, recorded.arrival);
+    if (!sample) return;
+    sample->arrival = recorded.arrival;
+    sample->time = std::min(sample->time, sample->arrival);
+    filter_.add(p.eye, *sample);
+}
+
 void ReplayEyes::feed_until(TimeNs time) {
+    if (!session_.pictures.empty()) {
+        for (; next_ < session_.pictures.size() && session_.pictures[next_].arrival <= time; ++next_) look_at(session_.pictures[next_]);
+        return;
+    }
     for (; next_ < session_.eyes.size() && session_.eyes[next_].sample.arrival <= time; ++next_)
         filter_.add(session_.eyes[next_].eye, session_.eyes[next_].sample);
 }
@@ -191,6 +213,7 @@ std::optional<RawEyeSample> ReplayEyes::raw_at(int eye, TimeNs time) {
 }
 
 std::string ReplayEyes::description() const {
+    if (!session_.pictures.empty()) return fmt::format("a recording with {} pictures of eye cameras", session_.pictures.size());
     return session_.eye_tracker ? fmt::format("a recording with {} eye samples", session_.eyes.size())
                                 : "the recorded headset had no eye tracker";
 }

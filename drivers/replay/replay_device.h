@@ -3,17 +3,25 @@
 
 #include "drivers/driver.h"
 #include "drivers/eye_tracking/eye_filter.h"
+#include "drivers/pupil_labs/eye_processor.h"
 #include "drivers/recording/recorded_samples.h"
 #include "drivers/recording/recording.h"
 #include "drivers/vive_pro/vive_pro_tracker.h"
 
+#include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace entoptic::drivers {
 
 extern const Driver replay_driver;
+
+struct RecordedPicture {
+    TimeNs arrival = 0;
+    EyePicture picture;
+};
 
 // A recording in memory, checked.
 struct RecordedSession {
@@ -23,9 +31,10 @@ struct RecordedSession {
     bool eye_tracker = false;
     std::string configuration;  // of a Vive Pro; else empty
     vive_pro::ImuRanges ranges;
-    std::vector<RecordedPose> poses;  // each list in the order of its times
-    std::vector<RecordedEye> eyes;    // by arrival
-    std::vector<Record> reports;      // of a Vive Pro
+    std::vector<RecordedPose> poses;        // each list in the order of its times
+    std::vector<RecordedEye> eyes;          // by arrival
+    std::vector<Record> reports;            // of a Vive Pro
+    std::vector<RecordedPicture> pictures;  // of eye cameras, by arrival
     std::vector<Record> events;
     TimeNs start = 0, end = 0;     // of the first and last sample
     std::uint64_t malformed = 0;   // records that say nothing
@@ -54,6 +63,7 @@ private:
     PoseHistory history_;
 };
 
+// Where there are pictures of eye cameras, they go through detector and eye model again; else the recorded samples are given out.
 class ReplayEyes final : public EyeSource {
 public:
     ReplayEyes(const RecordedSession& session, const std::array<Fov, 2>& limits, DurationNs shift);
@@ -65,10 +75,13 @@ public:
 private:
     void feed_until(TimeNs time);
 
+    void look_at(const RecordedPicture& recorded);
+
     const RecordedSession& session_;
     DurationNs shift_;
     std::mutex mutex_;
     std::size_t next_ = 0;
+    std::array<std::optional<EyeProcessor>, 2> processors_;
     EyeFilter filter_;
 };
 

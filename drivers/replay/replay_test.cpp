@@ -1,9 +1,12 @@
 // labels: unit
 #include "drivers/replay/replay_device.h"
 
+#include "drivers/pupil_labs/testing/eye_pictures.h"
 #include "drivers/virtual_hmd/virtual_hmd_device.h"
 #include "drivers/vive_pro/testing/vive_model.h"
 
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -105,6 +108,45 @@ TEST_F(ReplayTest, AVivesReportsGiveTheSamePosesToTheBit) {
         ASSERT_EQ(again.pose.orientation, poses[n].pose.orientation) << n;
         ASSERT_EQ(again.pose.position, poses[n].pose.position) << n;
     }
+}
+
+TEST_F(ReplayTest, EyePicturesAreSeenAgainByTheSameDetector) {
+    const char* product = "Pupil Cam3 ID1";
+    EyeProcessor live(0, pupil_labs_camera(product, 192, 192));
+    std::vector<std::optional<RawEyeSample>> seen;
+    const TimeNs start = 9 * ns_per_s, period = 5'000'000;
+    {
+        auto writer = RecordingWriter::create(path_, description("virtual").dump(), start);
+        ASSERT_TRUE(writer);
+        for (std::uint32_t n = 0; n < 480; ++n) {
+            std::vector<std::uint8_t> jpeg = testing::eye_pictures()[n % 24];
+            if (n == 350) jpeg.resize(jpeg.size() / 2);  // one that was cut on its way
+            const TimeNs arrival = start + n * period;
+            (*writer)->add(Stream::eye_picture, arrival, encode_eye_picture({0, product, 192, 192, arrival - 3'000'000, n, jpeg}));
+            seen.push_back(live.process({jpeg, arrival - 3'000'000, n}, arrival));
+        }
+    }
+    ASSERT_TRUE(live.model().fitted());
+    DriverOptions options;
+    options.name = "replay";
+    options.script = path_;
+    options.start_time = 2 * ns_per_s;
+    const auto replay = open_headset(options);
+    ASSERT_TRUE(replay) << replay.error().message;
+    std::size_t with_gaze = 0;
+    for (std::size_t n = 0; n < seen.size(); ++n) {
+        if (!seen[n]) continue;  // the cut one
+        const auto raw = replay->eye_tracker->raw_at(0, options.start_time + static_cast<TimeNs>(n) * period);
+        ASSERT_TRUE(raw) << n;
+        EXPECT_EQ(std::memcmp(&raw->gaze_direction, &seen[n]->gaze_direction, sizeof raw->gaze_direction), 0) << n;
+        EXPECT_EQ(std::memcmp(&raw->pupil_diameter_mm, &seen[n]->pupil_diameter_mm, sizeof(float)), 0) << n;
+        EXPECT_EQ(raw->confidence, seen[n]->confidence) << n;
+        EXPECT_EQ(raw->time - options.start_time, seen[n]->time - start) << n;
+        with_gaze += std::isfinite(raw->gaze_direction.z);
+    }
+    EXPECT_GT(with_gaze, 100u);
+    EXPECT_FALSE(seen[350]);
+    EXPECT_NE(replay->eye_tracker->description().find("480 pictures"), std::string::npos) << replay->eye_tracker->description();
 }
 
 TEST_F(ReplayTest, WrongDescriptionsAreErrors) {
