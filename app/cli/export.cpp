@@ -187,30 +187,42 @@ Result<void> export_csv(const drivers::RecordedSession& session, const std::stri
 
 // ---- Pictures ----------------------------------------------------------------------------------------------------------------------------
 
-Result<void> export_pictures(const drivers::RecordedSession& session, const std::string& prefix) {
-    if (session.pictures.empty())
-        return failure(
-            "The recording holds no pictures of eye cameras. They are recorded from real cameras, unless with --no-eye-pictures.");
+// A field of a table with commas.
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+// One after the other, straight from the file: there may be more of them than memory.
+Result<void> export_pictures(const std::string& file, TimeNs start, const std::string& prefix) {
+    ENTOPTIC_TRY(reader, drivers::RecordingReader::open(file));
     std::string list = "file,eye,time_s,arrival_s,sequence,camera\n";
-    for (std::size_t i = 0; i < session.pictures.size(); ++i) {
-        const auto& [arrival, picture] = session.pictures[i];
-        const char* side = picture.eye == 0 ? "left" : "right";
-        const std::string path = fmt::format("{}_{:06}_{}.jpg", prefix, i, side);
+    std::size_t count = 0;
+    while (const auto record = reader.next()) {
+        if (record->stream != drivers::Stream::eye_picture) continue;
+        const auto picture = drivers::decode_eye_picture(record->payload);
+        if (!picture) continue;
+        const char* side = picture->eye == 0 ? "left" : "right";
+        const std::string path = fmt::format("{}_{:06}_{}.jpg", prefix, count++, side);
         std::ofstream out(path, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(picture.jpeg.data()), static_cast<std::streamsize>(picture.jpeg.size()));
+        out.write(reinterpret_cast<const char*>(picture->jpeg.data()), static_cast<std::streamsize>(picture->jpeg.size()));
         out.close();
         if (!out) return failure(fmt::format("{} cannot be written. Choose another place with -o.", path));
-        list += fmt::format("{},{},{:.6f},{:.6f},{},{}\n", std::filesystem::path(path).filename().string(), side,
-                            seconds(picture.time - session.start), seconds(arrival - session.start), picture.sequence, picture.product);
+        list += fmt::format("{},{},{:.6f},{:.6f},{},{}\n", quoted(std::filesystem::path(path).filename().string()), side,
+                            seconds(picture->time - start), seconds(record->time - start), picture->sequence, quoted(picture->product));
     }
+    if (count == 0)
+        return failure(
+            "The recording holds no pictures of eye cameras. They are recorded from real cameras, unless with --no-eye-pictures.");
     return write_text(prefix + "_pictures.csv", list);
 }
 
 Result<int> run_export(const ExportOptions& o) {
-    ENTOPTIC_TRY(session, drivers::load_session(o.file));
+    ENTOPTIC_TRY(session, drivers::load_session(o.file, 0));  // without pictures
     const std::string prefix = o.output.empty() ? std::filesystem::path(o.file).replace_extension().string() : o.output;
     ENTOPTIC_CHECK(o.format == "bids"       ? export_bids(session, prefix)
-                   : o.format == "pictures" ? export_pictures(session, prefix)
+                   : o.format == "pictures" ? export_pictures(o.file, session.start, prefix)
                                             : export_csv(session, prefix));
     if (session.lost_bytes > 0)
         fmt::print(stderr, "entoptic: the recording was cut short; what came before its last {} bytes was exported.\n", session.lost_bytes);

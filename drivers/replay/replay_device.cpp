@@ -14,7 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uint64_t max_session_bytes = 1ull << 30;
 constexpr TimeNs farthest_time = 1ll << 61;  // so that differences and shifts of times never overflow
 
 Result<double> number(const Json& json, const char* key, double low, double high) {
@@ -93,21 +92,24 @@ Result<Headset> open(const DriverOptions& options) {
 
 const Driver replay_driver{"replay", "a recording (entoptic record), through the code of the device it was made with", open};
 
-Result<RecordedSession> load_session(const std::string& path) {
+Result<RecordedSession> load_session(const std::string& path, std::uint64_t max_picture_bytes) {
     ENTOPTIC_TRY(reader, RecordingReader::open(path));
     RecordedSession out;
     ENTOPTIC_CHECK(read_description(reader.description(), out));
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = 0, picture_bytes = 0;
     bool first = true;
     while (auto record = reader.next()) {
-        bytes += record->payload.size() + 64;
+        const bool is_picture = record->stream == Stream::eye_picture;
+        (is_picture ? picture_bytes : bytes) += record->payload.size() + 64;
         if (bytes > max_session_bytes) return failure(fmt::format("{} holds more than a gigabyte of samples; replay takes no more.", path));
         if (possible(record->time)) {
             out.start = first ? record->time : std::min(out.start, record->time);
             out.end = first ? record->time : std::max(out.end, record->time);
             first = false;
         }
-        take(std::move(*record), out);
+        out.pictures_left_out = picture_bytes > max_picture_bytes;
+        if (out.pictures_left_out) out.pictures = {};
+        if (!is_picture || !out.pictures_left_out) take(std::move(*record), out);
     }
     // The two eyes' samples are written one after the other, whichever arrived first.
     std::stable_sort(out.eyes.begin(), out.eyes.end(),
@@ -176,9 +178,15 @@ ReplayEyes::ReplayEyes(const RecordedSession& session, const std::array<Fov, 2>&
 
 void ReplayEyes::look_at(const RecordedPicture& recorded) {
     const EyePicture& p = recorded.picture;
-    auto& processor = processors_[static_cast<std::size_t>(p.eye)];
-    if (!processor) processor.emplace(p.eye, pupil_labs_camera(p.product, p.width, p.height));
-    auto sample = processor->process({p.jpeg, p.time, p.sequence}, recorded.arrival);
+    Eye& eye = looking_[static_cast<std::size_t>(p.eye)];
+    // Another camera, or the same at another size: what its pictures are of is learnt anew, as live.
+    if (!eye.processor || eye.product != p.product || eye.width != p.width || eye.height != p.height) {
+        eye.processor.emplace(p.eye, pupil_labs_camera(p.product, p.width, p.height));
+        eye.product = p.product;
+        eye.width = p.width;
+        eye.height = p.height;
+    }
+    auto sample = eye.processor->process({p.jpeg, p.time, p.sequence}, recorded.arrival);
     if (!sample) return;
     sample->arrival = recorded.arrival;
     sample->time = std::min(sample->time, sample->arrival);
@@ -214,8 +222,9 @@ std::optional<RawEyeSample> ReplayEyes::raw_at(int eye, TimeNs time) {
 
 std::string ReplayEyes::description() const {
     if (!session_.pictures.empty()) return fmt::format("a recording with {} pictures of eye cameras", session_.pictures.size());
-    return session_.eye_tracker ? fmt::format("a recording with {} eye samples", session_.eyes.size())
-                                : "the recorded headset had no eye tracker";
+    if (!session_.eye_tracker) return "the recorded headset had no eye tracker";
+    return fmt::format("a recording with {} eye samples{}", session_.eyes.size(),
+                       session_.pictures_left_out ? "; its pictures take more than a gigabyte and are left out" : "");
 }
 
 // ---- Headset ------------------------------------------------------------------------------------------------------------------------------

@@ -35,13 +35,16 @@ struct RecordedSession {
     std::vector<RecordedEye> eyes;          // by arrival
     std::vector<Record> reports;            // of a Vive Pro
     std::vector<RecordedPicture> pictures;  // of eye cameras, by arrival
+    bool pictures_left_out = false;         // there are more than memory is given to; the samples they gave are in `eyes`
     std::vector<Record> events;
     TimeNs start = 0, end = 0;     // of the first and last sample
     std::uint64_t malformed = 0;   // records that say nothing
     std::uint64_t lost_bytes = 0;  // at the end, where the file was cut
 };
-// Errors: the file cannot be read; its description is wrong; more than a gigabyte.
-Result<RecordedSession> load_session(const std::string& path);
+constexpr std::uint64_t max_session_bytes = 1ull << 30;
+// Errors: the file cannot be read; its description is wrong; more than a gigabyte without the pictures. Pictures that take more than
+// `max_picture_bytes` are left out, all of them.
+Result<RecordedSession> load_session(const std::string& path, std::uint64_t max_picture_bytes = max_session_bytes);
 
 // Answers at the session's own times plus `shift`: time of the recording = asked time − shift.
 class ReplayHead final : public PoseSource {
@@ -75,13 +78,19 @@ public:
 private:
     void feed_until(TimeNs time);
 
+    // Through which pictures of one eye go, and for which camera it was made.
+    struct Eye {
+        std::optional<EyeProcessor> processor;
+        std::string product;
+        int width = 0, height = 0;
+    };
     void look_at(const RecordedPicture& recorded);
 
     const RecordedSession& session_;
     DurationNs shift_;
     std::mutex mutex_;
     std::size_t next_ = 0;
-    std::array<std::optional<EyeProcessor>, 2> processors_;
+    std::array<Eye, 2> looking_;
     EyeFilter filter_;
 };
 

@@ -147,6 +147,11 @@ TEST_F(ReplayTest, EyePicturesAreSeenAgainByTheSameDetector) {
     EXPECT_GT(with_gaze, 100u);
     EXPECT_FALSE(seen[350]);
     EXPECT_NE(replay->eye_tracker->description().find("480 pictures"), std::string::npos) << replay->eye_tracker->description();
+    // More pictures than there may be: the session is loaded without them, and says so.
+    const auto without = load_session(path_, 10'000);
+    ASSERT_TRUE(without) << without.error().message;
+    EXPECT_TRUE(without->pictures_left_out && without->pictures.empty());
+    EXPECT_FALSE(load_session(path_)->pictures_left_out);
 }
 
 TEST_F(ReplayTest, WrongDescriptionsAreErrors) {
