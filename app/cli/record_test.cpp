@@ -1,6 +1,8 @@
 // labels: unit
 // Record, replay and export as people run them; doctor and runtime.
 #include "app/testing/command_line.h"
+#include "drivers/recording/recorded_samples.h"
+#include "drivers/recording/recording.h"
 
 #include <algorithm>
 #include <set>
@@ -88,6 +90,27 @@ TEST_F(RecordTest, ExportsCsv) {
     ASSERT_EQ(entoptic({"export", recording("1"), "--format", "csv", "-o", path("t")}).status, 0);
     EXPECT_EQ(testing::text_of(path("t_eyes.csv")).rfind("time_s,eye,x_deg,y_deg,pupil_mm,confidence,arrival_s\n", 0), 0u);
     EXPECT_EQ(testing::text_of(path("t_head.csv")).rfind("x_m,y_m,z_m,qx,qy,qz,qw,time_s\n", 0), 0u);
+}
+
+TEST_F(RecordTest, ExportsTheEyeCamerasPicturesAsTheyCame) {
+    // The virtual headset has no cameras.
+    const auto none = entoptic({"export", recording("0.1"), "--format", "pictures", "-o", path("p")});
+    EXPECT_NE(none.status, 0);
+    EXPECT_NE(none.err.find("holds no pictures"), std::string::npos) << none.err;
+    const std::string description = R"({"version":1,"hmd":"virtual","panel_width":720,"panel_height":800,"ipd_mm":63,"eye_tracker":true})";
+    {
+        auto writer = drivers::RecordingWriter::create(path("c.etp"), description, 1'000'000'000);
+        ASSERT_TRUE(writer);
+        for (int eye : {1, 0})
+            (*writer)->add(
+                drivers::Stream::eye_picture, 1'010'000'000,
+                drivers::encode_eye_picture({eye, "Pupil \"Cam\"", 192, 192, 1'005'000'000, 7, {0xff, 0xd8, std::uint8_t(eye)}}));
+    }
+    ASSERT_EQ(entoptic({"export", path("c.etp"), "--format", "pictures", "-o", path("p")}).status, 0);
+    EXPECT_EQ(testing::text_of(path("p_000000_right.jpg")), (std::string{char(0xff), char(0xd8), 1}));
+    EXPECT_EQ(testing::text_of(path("p_000001_left.jpg")), (std::string{char(0xff), char(0xd8), 0}));
+    const std::string list = testing::text_of(path("p_pictures.csv"));
+    EXPECT_NE(list.find("\"p_000000_right.jpg\",right,-0.005000,0.000000,7,\"Pupil \"\"Cam\"\"\"\n"), std::string::npos) << list;
 }
 
 TEST_F(RecordTest, ARealHeadsetThatIsNotThereIsSaid) {

@@ -66,6 +66,8 @@ Json summary(const drivers::RecordedSession& s, const Differences& d) {
             {"seconds", seconds(s.end - s.start)},
             {"poses", s.poses.size()},
             {"eye_samples", s.eyes.size()},
+            {"eye_pictures", s.pictures.size()},
+            {"eye_pictures_left_out", s.pictures_left_out},
             {"reports", s.reports.size()},
             {"events", s.events.size()},
             {"malformed", s.malformed},
@@ -79,6 +81,10 @@ void print_summary(const Json& s) {
     fmt::print("{:.3f} s of {}: {} poses, {} eye samples, {} reports, {} events.\n", s["seconds"].get<double>(),
                s["hmd"].get<std::string>(), s["poses"].get<std::size_t>(), s["eye_samples"].get<std::size_t>(),
                s["reports"].get<std::size_t>(), s["events"].get<std::size_t>());
+    if (s["eye_pictures_left_out"].get<bool>())
+        fmt::print("The eye cameras' pictures take more than a gigabyte: the samples they gave when they were recorded stand for them.\n");
+    else if (s["eye_pictures"].get<std::size_t>() > 0)
+        fmt::print("{} pictures of eye cameras went through the detector again.\n", s["eye_pictures"].get<std::size_t>());
     if (s["lost_bytes"].get<std::uint64_t>() > 0)
         fmt::print("The file was cut short or is damaged: its last {} bytes are no whole sample.\n", s["lost_bytes"].get<std::uint64_t>());
     if (s["malformed"].get<std::uint64_t>() > 0)
