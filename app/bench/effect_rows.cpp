@@ -1,6 +1,7 @@
 #include "app/bench/effect_rows.h"
 
 #include "app/bench/bench_scene.h"
+#include "app/bench/timed_frames.h"
 #include "app/bench/trades.h"
 #include "app/simulation/simulator.h"
 #include "base/colour_difference.h"
@@ -8,7 +9,6 @@
 #include "shaders/colour_math.glsl"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -23,8 +23,6 @@ using namespace perception;
 constexpr float pupil_mm = 5;  // kernels are built there: rows that do not move it see none between two
 constexpr float between_kernels_mm = 4.87f;
 constexpr float pupil_step_mm = 0.02f;  // a frame: 1.8 mm/s at 90 Hz, a pupil that dilates
-constexpr int warm_up_frames = 2;       // pipelines are compiled at their first dispatch
-constexpr int least_frames = 3;
 constexpr double history_s = 0.1;
 constexpr double same_time = 1.05;
 
@@ -169,19 +167,14 @@ private:
         ENTOPTIC_TRY(selection, alone(variant, variant.settings()));
         ENTOPTIC_TRY(stage, Stage::create(device_, {{bench_geometry(o_.width, o_.height)}, {}, selection, 1}));
         ENTOPTIC_TRY(commands, gpu::Commands::create(device_, "bench"));
-        std::vector<double> times;
-        const auto start = std::chrono::steady_clock::now();
-        for (int i = 0; i < o_.frames + warm_up_frames; ++i) {
-            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-            if (int(times.size()) >= least_frames && spent.count() > o_.seconds) break;
+        return timed_frames(o_.frames, o_.seconds, [&](std::uint64_t index) -> Result<double> {
             ENTOPTIC_CHECK(commands.begin());
             ENTOPTIC_CHECK(stage->record_ingest(commands, {&timed_scene_, 1}, {&timed_depth_, 1}));
-            stage->record(commands, input_of(variant, std::uint64_t(i), true));
+            stage->record(commands, input_of(variant, index, true));
             ENTOPTIC_CHECK(commands.submit());
             ENTOPTIC_CHECK(commands.wait());
-            if (i >= warm_up_frames) times.push_back(slot_ms(commands, variant.slot()));
-        }
-        return percentiles(std::move(times));
+            return slot_ms(commands, variant.slot());
+        });
     }
 
     // The model with adaptation and tone, without which nothing of it could be displayed.

@@ -1,17 +1,14 @@
 #include "app/bench/foveation_rows.h"
 
 #include "app/bench/bench_scene.h"
+#include "app/bench/timed_frames.h"
 #include "perception/preset.h"
 #include "perception/stage.h"
-
-#include <chrono>
 
 namespace entoptic::app {
 namespace {
 
 using namespace perception;
-
-constexpr int warm_up_frames = 2, least_frames = 3;
 
 struct Variant {
     const char *setting, *parameter;
@@ -42,28 +39,24 @@ Result<Run> run_of(gpu::Device& device, const EffectBenchOptions& o, const Varia
     ENTOPTIC_TRY(stage, Stage::create(device, {{bench_geometry(o.width, o.height)}, {}, selection, 1}));
     ENTOPTIC_TRY(commands, gpu::Commands::create(device, "bench"));
     const ImageF scene = bench_scene(o.width, o.height), depth = bench_depth(o.width, o.height);
-    std::vector<double> times;
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < o.frames + warm_up_frames; ++i) {
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        if (int(times.size()) >= least_frames && spent.count() > o.seconds) break;
-        FrameInput input;
-        input.dt_s = 1.0 / 90;
-        input.snap = i == 0;
-        input.index = std::uint64_t(i);
-        input.eyes.resize(1);
-        ENTOPTIC_CHECK(commands.begin());
-        ENTOPTIC_CHECK(stage->record_ingest(commands, {&scene, 1}, {&depth, 1}));
-        stage->record(commands, input);
-        ENTOPTIC_CHECK(stage->record_download(commands, 0));
-        ENTOPTIC_CHECK(commands.submit());
-        ENTOPTIC_CHECK(commands.wait());
-        double ms = 0;
-        for (const gpu::StageTime& t : commands.stage_times())
-            if (t.name.starts_with("perceive.")) ms += t.ms;
-        if (i >= warm_up_frames) times.push_back(ms);
-    }
-    return Run{percentiles(std::move(times)), stage->downloaded(0)};
+    ENTOPTIC_TRY(times, timed_frames(o.frames, o.seconds, [&](std::uint64_t index) -> Result<double> {
+                     FrameInput input;
+                     input.dt_s = 1.0 / 90;
+                     input.snap = index == 0;
+                     input.index = index;
+                     input.eyes.resize(1);
+                     ENTOPTIC_CHECK(commands.begin());
+                     ENTOPTIC_CHECK(stage->record_ingest(commands, {&scene, 1}, {&depth, 1}));
+                     stage->record(commands, input);
+                     ENTOPTIC_CHECK(stage->record_download(commands, 0));
+                     ENTOPTIC_CHECK(commands.submit());
+                     ENTOPTIC_CHECK(commands.wait());
+                     double ms = 0;
+                     for (const gpu::StageTime& t : commands.stage_times())
+                         if (t.name.starts_with("perceive.")) ms += t.ms;
+                     return ms;
+                 }));
+    return Run{times, stage->downloaded(0)};
 }
 
 }  // namespace

@@ -1,20 +1,18 @@
 #include "app/bench/frame_times.h"
 
 #include "app/bench/bench_scene.h"
+#include "app/bench/timed_frames.h"
 #include "compositor/frame.h"
 #include "compositor/images.h"
 #include "drivers/driver.h"
 #include "perception/preset.h"
 
-#include <chrono>
 #include <unistd.h>
 
 namespace entoptic::app {
 namespace {
 
 using namespace compositor;
-
-constexpr int warm_up_frames = 2, least_frames = 3;
 
 void hand_over(gpu::Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to, std::uint32_t from_family,
                std::uint32_t to_family) {
@@ -105,17 +103,13 @@ public:
         Picture picture(device_, pool_);
         ENTOPTIC_CHECK(picture.fill(scene));
         const std::vector<Layer> layers{picture.layer(headset_.eyes)};
-        std::vector<double> times;
-        const auto start = std::chrono::steady_clock::now();
-        for (int i = 0; i < o_.frames + warm_up_frames; ++i) {
-            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-            if (int(times.size()) >= least_frames && spent.count() > 2 * o_.seconds) break;
-            ENTOPTIC_TRY(outcome, path->compose(frame(layers, std::uint64_t(i)), pool_.use(layers)));
-            double ms = 0;
-            for (const StageMs& stage : outcome.gpu_ms) ms += stage.ms;
-            if (i >= warm_up_frames) times.push_back(ms);
-        }
-        return percentiles(std::move(times)).median;
+        ENTOPTIC_TRY(times, timed_frames(o_.frames, 2 * o_.seconds, [&](std::uint64_t index) -> Result<double> {
+                         ENTOPTIC_TRY(outcome, path->compose(frame(layers, index), pool_.use(layers)));
+                         double ms = 0;
+                         for (const StageMs& stage : outcome.gpu_ms) ms += stage.ms;
+                         return ms;
+                     }));
+        return times.median;
     }
 
 private:
