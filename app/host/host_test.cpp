@@ -117,6 +117,17 @@ TEST_F(HostTest, TellsItsStatusWhileItLives) {
     EXPECT_EQ(json_of("launcher/progress.json")["frames"]["displayed"], 0);
 }
 
+// What this process's runtime says to a request.
+SettingsAnswer answer_to(const std::string& id) {
+    for (int i = 0; i < 500; ++i) {
+        for (const RunningRuntime& runtime : running_runtimes())
+            if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << "no answer";
+    return {};
+}
+
 TEST_F(HostTest, TakesSettingsWhileItRuns) {
     configure({{"preset", "\"combined\""}});
     auto host = open();
@@ -125,13 +136,7 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
         static int number = 0;
         const std::string id = std::to_string(++number);
         EXPECT_TRUE(leave_request(getpid(), {id, std::move(choice), reset}));
-        for (int i = 0; i < 500; ++i) {
-            for (const RunningRuntime& runtime : running_runtimes())
-                if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        ADD_FAILURE() << "no answer";
-        return SettingsAnswer{};
+        return answer_to(id);
     };
     const auto set = [&](std::vector<std::string> settings, bool reset = false) { return choose({"", {}, std::move(settings)}, reset); };
     using List = std::vector<std::string>;
@@ -166,7 +171,8 @@ TEST_F(HostTest, TakesSettingsWhileItRuns) {
 
 TEST_F(HostTest, RecentresTheGazeOnWhatTheWearerLooksAt) {
     // A wearer who looks at a point two metres ahead, and a tracker that takes it for one 6 degrees right and 3 down.
-    std::ofstream(path("slipped.toml")) << "version = 1\nname = \"slipped\"\nduration_s = 1\nloop = true\n[gaze]\ndirection_deg = [6, -3]\n";
+    std::ofstream(path("slipped.toml"))
+        << "version = 1\nname = \"slipped\"\nduration_s = 1\nloop = true\n[gaze]\ndirection_deg = [6, -3]\n";
     configure({{"script", toml_string(path("slipped.toml"))}, {"ideal_tracker", "true"}, {"observer", "\"70-years\""}});
     auto host = open();
     ASSERT_TRUE(host) << host.error().message;
@@ -189,13 +195,7 @@ TEST_F(HostTest, RecentresTheGazeOnWhatTheWearerLooksAt) {
         wish.recentre_gaze = true;
         wish.save_gaze = save;
         EXPECT_TRUE(leave_request(getpid(), wish));
-        for (int i = 0; i < 500; ++i) {
-            for (const RunningRuntime& runtime : running_runtimes())
-                if (const auto answer = answer_of(runtime.status); answer && answer->id == id) return *answer;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        ADD_FAILURE() << "no answer";
-        return SettingsAnswer{};
+        return answer_to(id);
     };
     EXPECT_GT(centre_error(), 6);
     const SettingsAnswer answer = request(false);
