@@ -1,5 +1,6 @@
 // A window on the desktop (X11): both eyes side by side, what the panel shows or what the eyes see through the lenses.
-// Keys: s switches between the two, c says that the wearer looks at the centre now (the eye tracker has slipped), q and Escape close. Needs a device made with DeviceOptions::windows.
+// Keys: s switches between the two, c says that the wearer looks at the centre now (the eye tracker has slipped), q and Escape close. Needs a device
+// made with DeviceOptions::windows.
 #pragma once
 
 #include "compositor/targets/target.h"

@@ -37,13 +37,13 @@ cd "$work"
 say "Fetching Debian's $image $version."
 common=linux-headers-${release%-*}-common
 apt-get -q download "$image=$version" "linux-source-6.1=$version" "linux-headers-$release=$version" "$common=$version" "linux-kbuild-6.1=$version" >&2
-for package in "$image" "linux-headers-$release" "$common" linux-kbuild-6.1; do dpkg-deb -x "$package"_*.deb root; done
+for package in "$image" "linux-headers-$release" "$common" linux-kbuild-6.1; do dpkg-deb -x "$package"_*.deb packages; done
 dpkg-deb --fsys-tarfile linux-source-6.1_*.deb | tar -xO ./usr/src/linux-source-6.1.tar.xz | tar -xJ linux-source-6.1/drivers/gpu/drm/vkms
 
 # vkms as a module against Debian's headers, whose makefile names them where they would be installed.
 "$here/vkms_panel.sh" linux-source-6.1/drivers/gpu/drm/vkms/vkms_output.c
-sed -i "s#/usr/src/#$work/root/usr/src/#g" "root/usr/src/linux-headers-$release/Makefile"
-make -s -C "root/usr/src/linux-headers-$release" M="$work/linux-source-6.1/drivers/gpu/drm/vkms" CONFIG_DRM_VKMS=m modules >build.log 2>&1 || {
+sed -i "s#/usr/src/#$work/packages/usr/src/#g" "packages/usr/src/linux-headers-$release/Makefile"
+make -s -C "packages/usr/src/linux-headers-$release" M="$work/linux-source-6.1/drivers/gpu/drm/vkms" CONFIG_DRM_VKMS=m modules >build.log 2>&1 || {
     tail -n 20 build.log >&2
     say "vkms did not build."
     exit 1
@@ -51,11 +51,11 @@ make -s -C "root/usr/src/linux-headers-$release" M="$work/linux-source-6.1/drive
 
 out=$work/out
 mkdir -p "$out/lib"
-mv "root/lib/modules" "$out/lib/modules"
+mv "packages/lib/modules" "$out/lib/modules"
 cp linux-source-6.1/drivers/gpu/drm/vkms/vkms.ko "$out/lib/modules/$release/kernel/drivers/gpu/drm/"
 depmod -b "$out" "$release"
 # QEMU starts an unpacked kernel (its PVH entry) a second or two sooner than one that unpacks itself.
-python3 - "root/boot/vmlinuz-$release" "$out/vmlinux" <<'P'
+python3 - "packages/boot/vmlinuz-$release" "$out/vmlinux" <<'P'
 import lzma, sys
 data = open(sys.argv[1], "rb").read()
 open(sys.argv[2], "wb").write(lzma.LZMADecompressor().decompress(data[data.find(b"\xfd7zXZ\0"):]))
