@@ -186,7 +186,7 @@ void add_record(CLI::App& app, Action& action) {
     c->add_option("--clock", o->clock, "real, or lockstep: as fast as it goes, the same bits every time")
         ->check(CLI::IsMember({"real", "lockstep"}));
     c->add_flag("--no-eye-pictures", o->no_eye_pictures,
-                "Leave the eye cameras' pictures out (some 2 MB a second); samples are recorded anyway");
+                "Leave the eye cameras' pictures out: samples are recorded anyway");
     c->add_flag("--progress", o->progress, "Tell progress even without a terminal");
     c->callback([o, &action] { action = [o] { return record(*o); }; });
 }
