@@ -116,7 +116,6 @@ public:
         : device_(device),
           o_(options),
           compared_(o_.error_width, o_.error_height),
-          slowly_compared_(o_.slow_error_width, o_.slow_error_height),
           timed_scene_(bench_scene(o_.width, o_.height)),
           timed_depth_(bench_depth(o_.width, o_.height)) {}
 
@@ -189,23 +188,18 @@ private:
 
     Result<void> show(Simulator& simulator, const Variant& variant) const {
         std::uint64_t index = 0;
-        const Compared& on = compared_for(variant);
-        if (remembers(variant.entry->slot)) ENTOPTIC_CHECK(simulator.frame(on.before, on.depth, input_of(variant, index++, false), false));
-        return simulator.frame(on.scene, on.depth, input_of(variant, index, false), true);
+        const Compared& c = compared_;
+        if (remembers(variant.entry->slot)) ENTOPTIC_CHECK(simulator.frame(c.before, c.depth, input_of(variant, index++, false), false));
+        return simulator.frame(c.scene, c.depth, input_of(variant, index, false), true);
     }
     Result<PictureError> error_of(const Variant& variant) {
         ENTOPTIC_TRY(selection, alone(variant, variant.settings()));
-        ENTOPTIC_TRY(gpu, make_gpu_simulator(device_, options_for(variant, selection)));
+        ENTOPTIC_TRY(gpu, make_gpu_simulator(device_, options_for(selection)));
         ENTOPTIC_CHECK(show(*gpu, variant));
         ENTOPTIC_TRY(truth, truth_of(variant));
         return picture_error(gpu->picture(), *truth);
     }
-    const Compared& compared_for(const Variant& variant) const {
-        return variant.entry->name == "fraunhofer_mask" ? slowly_compared_ : compared_;
-    }
-    SimulatorOptions options_for(const Variant& variant, const Selection& selection) const {
-        return {compared_for(variant).geometry, {}, selection, 1};
-    }
+    SimulatorOptions options_for(const Selection& selection) const { return {compared_.geometry, {}, selection, 1}; }
 
     // By the references, with the finest value of every parameter that only costs time, and of this trade's.
     Result<const ImageF*> truth_of(const Variant& variant) {
@@ -220,14 +214,14 @@ private:
             fmt::format("{} {} {}", variant.entry->name, variant.apart() ? variant.trade->parameter : "", fmt::join(finest, " "));
         if (const auto known = truths_.find(key); known != truths_.end()) return &known->second;
         ENTOPTIC_TRY(selection, alone(variant, finest));
-        const auto reference = make_reference_simulator(options_for(variant, selection));
+        const auto reference = make_reference_simulator(options_for(selection));
         ENTOPTIC_CHECK(show(*reference, variant));
         return &(truths_[key] = reference->picture());
     }
 
     gpu::Device& device_;
     const EffectBenchOptions& o_;
-    Compared compared_, slowly_compared_;
+    Compared compared_;
     ImageF timed_scene_, timed_depth_;
     std::map<std::string, ImageF> truths_;
 };

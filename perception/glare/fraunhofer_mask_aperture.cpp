@@ -73,8 +73,8 @@ double filter_coverage(dvec2 at, const FraunhoferMaskParams& p, double pitch) {
 
 // --- eyelashes ---
 
-// What covers the samples of one lash.
-void draw_strip(const Plane& plane, dvec2 a, dvec2 b, double half_width, std::vector<double>& opaque, std::vector<int>& touched) {
+// What covers the samples of one lash: a piece from a to b, cut off at each end by the line with that normal.
+void draw_strip(const Plane& plane, dvec2 a, dvec2 b, dvec2 cut_a, dvec2 cut_b, double half_width, std::vector<double>& opaque, std::vector<int>& touched) {
     const double length = glm::length(b - a), pitch = plane.pitch();
     if (length < 1e-9) return;
     const dvec2 along = (b - a) / length, normal{-along.y, along.x};
@@ -86,7 +86,8 @@ void draw_strip(const Plane& plane, dvec2 a, dvec2 b, double half_width, std::ve
             const dvec2 from = plane.centre(x, y) - a;
             const double t = glm::dot(from, along), d = glm::dot(from, normal) / pitch;
             if (std::abs(d) * pitch > reach || t < -reach || t > length + reach) continue;
-            const double ends = edge_coverage(t / pitch, -along.x, -along.y) * edge_coverage((length - t) / pitch, along.x, along.y);
+            const double ends = edge_coverage(glm::dot(from, cut_a) / pitch, cut_a.x, cut_a.y) *
+                                edge_coverage(glm::dot(b - plane.centre(x, y), cut_b) / pitch, cut_b.x, cut_b.y);
             const double share = std::clamp(strip_coverage(d, half_width / pitch, normal), 0.0, 1.0) * ends;
             if (share <= 0) continue;
             const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.n) + static_cast<std::size_t>(x);
@@ -97,13 +98,16 @@ void draw_strip(const Plane& plane, dvec2 a, dvec2 b, double half_width, std::ve
 }
 
 void draw_lashes(const FraunhoferMaskParams& p, double open, double shift_mm, const Plane& plane, ImageD& passes) {
-    constexpr int pieces = 16;
+    constexpr int pieces = 64;
+    const double half_width = 0.5 * static_cast<double>(p.lash_width_mm);
     std::vector<double> opaque(passes.data.size(), 0);
     std::vector<int> touched;
     for (const Lash& lash : grow_lashes(p, open, shift_mm)) {
         const int count = lash.curl > 0 ? pieces : 1;
-        for (int k = 0; k < count; ++k)
-            draw_strip(plane, lash.at(static_cast<double>(k) / count), lash.at((k + 1.0) / count), 0.5 * static_cast<double>(p.lash_width_mm), opaque, touched);
+        // Pieces meet at the line that halves the angle between them: with neither a gap nor an overlap.
+        const auto joint = [&](int k) { return lash.at(std::clamp(static_cast<double>(k) / count, 0.0, 1.0)); };
+        const auto cut = [&](int k) { return glm::normalize(glm::normalize(joint(std::max(k, 1)) - joint(std::max(k, 1) - 1)) + glm::normalize(joint(std::min(k, count - 1) + 1) - joint(std::min(k, count - 1)))); };
+        for (int k = 0; k < count; ++k) draw_strip(plane, joint(k), joint(k + 1), cut(k), cut(k + 1), half_width, opaque, touched);
         for (const int i : touched) {
             passes.data[static_cast<std::size_t>(i)] *= 1 - opaque[static_cast<std::size_t>(i)];
             opaque[static_cast<std::size_t>(i)] = 0;
