@@ -74,7 +74,8 @@ double filter_coverage(dvec2 at, const FraunhoferMaskParams& p, double pitch) {
 // --- eyelashes ---
 
 // What covers the samples of one lash: a piece from a to b, cut off at each end by the line with that normal.
-void draw_strip(const Plane& plane, dvec2 a, dvec2 b, dvec2 cut_a, dvec2 cut_b, double half_width, std::vector<double>& opaque, std::vector<int>& touched) {
+void draw_strip(const Plane& plane, dvec2 a, dvec2 b, dvec2 cut_a, dvec2 cut_b, double half_width, std::vector<double>& opaque,
+                std::vector<int>& touched) {
     const double length = glm::length(b - a), pitch = plane.pitch();
     if (length < 1e-9) return;
     const dvec2 along = (b - a) / length, normal{-along.y, along.x};
@@ -104,9 +105,10 @@ void draw_lashes(const FraunhoferMaskParams& p, double open, double shift_mm, co
     std::vector<int> touched;
     for (const Lash& lash : grow_lashes(p, open, shift_mm)) {
         const int count = lash.curl > 0 ? pieces : 1;
-        // Pieces meet at the line that halves the angle between them: with neither a gap nor an overlap.
-        const auto joint = [&](int k) { return lash.at(std::clamp(static_cast<double>(k) / count, 0.0, 1.0)); };
-        const auto cut = [&](int k) { return glm::normalize(glm::normalize(joint(std::max(k, 1)) - joint(std::max(k, 1) - 1)) + glm::normalize(joint(std::min(k, count - 1) + 1) - joint(std::min(k, count - 1)))); };
+        const auto joint = [&](int k) { return lash.at(static_cast<double>(k) / count); };
+        const auto along = [&](int k) { return glm::normalize(joint(k + 1) - joint(k)); };
+        // Pieces meet at the line that halves the angle between them: neither a gap nor an overlap.
+        const auto cut = [&](int k) { return glm::normalize(along(std::max(k - 1, 0)) + along(std::min(k, count - 1))); };
         for (int k = 0; k < count; ++k) draw_strip(plane, joint(k), joint(k + 1), cut(k), cut(k + 1), half_width, opaque, touched);
         for (const int i : touched) {
             passes.data[static_cast<std::size_t>(i)] *= 1 - opaque[static_cast<std::size_t>(i)];
@@ -143,7 +145,8 @@ std::vector<std::vector<Tap>> box_taps(int n, double first_cell, double cells_a_
 // The picture's mean, and that of its square, over each sample.
 void draw_picture(const ImageD& picture, double width_mm, double shift_mm, const Plane& plane, ImageD& mean, ImageD& mean_square) {
     const double cell = width_mm / picture.width, a_sample = plane.pitch() / cell;
-    const double left = (-plane.plane_mm / 2 - shift_mm) / cell + picture.width / 2.0, top = -plane.plane_mm / 2 / cell + picture.height / 2.0;
+    const double left = (-plane.plane_mm / 2 - shift_mm) / cell + picture.width / 2.0,
+                 top = -plane.plane_mm / 2 / cell + picture.height / 2.0;
     const auto across = box_taps(plane.n, left, a_sample, picture.width), down = box_taps(plane.n, top, a_sample, picture.height);
     ImageD row_mean(plane.n, picture.height, 2);
     for (int y = 0; y < picture.height; ++y)
@@ -176,7 +179,7 @@ Result<std::shared_ptr<const MaskPicture>> read_mask_picture(const std::string& 
         for (std::size_t i = 0; i < picture->transmission.data.size(); ++i) {
             const float* c = &exr.rgb.data[3 * i];
             const double y = 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) + 0.0722 * static_cast<double>(c[2]);
-            picture->transmission.data[i] = y > 0 ? std::min(y, 1.0) : 0.0;      // NaN: 0
+            picture->transmission.data[i] = y > 0 ? std::min(y, 1.0) : 0.0;  // NaN: 0
         }
     } else if (lower_ending(4) == ".png") {
         ENTOPTIC_TRY(png, read_png(path));
@@ -237,7 +240,8 @@ std::vector<Lash> grow_lashes(const FraunhoferMaskParams& p, double open, double
     return list;
 }
 
-ApertureRaster raster_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture, const ApertureState& state, int n, double plane_mm) {
+ApertureRaster raster_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture, const ApertureState& state, int n,
+                               double plane_mm) {
     const Plane plane{n, plane_mm};
     const double pitch = plane.pitch(), radius = 0.5 * state.pupil_mm, shift = state.obstacle_shift_mm;
     const int blades = static_cast<int>(std::lround(p.blades));
