@@ -239,6 +239,36 @@ TEST(Curves, PointSpreadsHoldAllLight) {
     EXPECT_NEAR(all_light("cie135", {}, 1e-5, 1500), 1, 3e-3);
 }
 
+// The differences that docs/curves.md states: beside the core, from 0.1 and from 1 degree on.
+TEST(Curves, PointSpreadsAreAsNearToTheirReferencesAsTheirPageSays) {
+    struct Case {
+        const char* model;
+        Settings settings;
+        double anywhere, outside, far;
+    };
+    const Case cases[] = {
+        {"closed_form", {{"pupil_mm", {6}}}, 0.029, 0.0018, 0.0009},
+        {"closed_form", {{"pupil_mm", {8}}, {"wavelength_nm", {700}}}, 0.0845, 0.019, 0.0018},
+        {"closed_form", {{"pupil_mm", {2}}, {"wavelength_nm", {700}}}, 0.084, 0.019, 0.0018},
+        {"luidolt_spectral", {{"pupil_mm", {2}}}, 0.036, 0.0074, 2e-4},
+        {"luidolt_spectral", {{"pupil_mm", {2}}, {"wavelength_nm", {475}}}, 0.092, 0.068, 0.0056},
+        {"luidolt_spectral", {{"pupil_mm", {2}}, {"wavelength_nm", {700}}}, 0.092, 0.068, 0.0057},
+        {"luidolt_spectral", {{"particles_per_mm2", {1e5}}}, 0.24, 0.0018, 0.0009},
+    };
+    for (const Case& c : cases) {
+        double anywhere = 0, outside = 0, far = 0;
+        for (const auto& row : rows("glare.psf", c.model, c.settings, logarithmic(0.02, 90, 400))) {
+            const double error = relative_error(row[2], row[3]);
+            anywhere = std::max(anywhere, error);
+            if (row[0] >= 0.1) outside = std::max(outside, error);
+            if (row[0] >= 1) far = std::max(far, error);
+        }
+        EXPECT_LE(anywhere, c.anywhere) << c.model;
+        EXPECT_LE(outside, c.outside) << c.model;
+        EXPECT_LE(far, c.far) << c.model;
+    }
+}
+
 TEST(Curves, PointSpreadIsThatOfTheCie) {
     // The published total over its own integral (cie_glare_energy).
     double total = 0;
