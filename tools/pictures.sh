@@ -66,6 +66,27 @@ done
 printf 'time_s,blink\n0,0\n1,1\n' >"$work/blink.csv"
 picture blink day 60 $night --trace "$work/blink.csv" --at 1.07 --model eyelid=blink
 
+# The same room for a tracker's pupil of 2.5 and of 6 mm, this user's before a white and a black frame: 2 and 8 mm, seen in the depth of field.
+case "$wanted" in
+*" luidolt_pupil "* | "  ")
+    for frame in white:2.5 black:6; do
+        "$programs/entoptic" simulate "$work/day/left.exr" -o "$output/luidolt_pupil_${frame%%:*}.png" --fov 60 --preset off $night --model pupil=luidolt_pupil \
+            --pupil "${frame#*:}" --model dof=dioptric_disc --set dof.focus_dioptre=3 >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+        echo "  $output/luidolt_pupil_${frame%%:*}.png"
+    done
+    ;;
+esac
+
+# The whole picture shows what the wearer does not see: reduction 4, the gaze on the chart.
+case "$wanted" in
+*" visual_polar "* | "  ")
+    "$programs/entoptic-demo" --offscreen "$work/wide" --size 560x420 --fov 90 --light day --lamp off >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    "$programs/entoptic" simulate "$work/wide/left.exr" -o "$output/visual_polar.png" --fov 90 --preset off $night --gaze=0,8 --set foveation.inverse=exact \
+        --set foveation.reduction=4 >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+    echo "  $output/visual_polar.png"
+    ;;
+esac
+
 # Three seconds with the gaze on the burning lamp, then it is switched off.
 case "$wanted" in
 *" jacobs "* | "  ")
