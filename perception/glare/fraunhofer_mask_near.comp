@@ -3,7 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it. One workgroup a
-// tile; the kernel is made for the tile's own pixels per degree and place in the zones.
+// tile; the kernel is made for the tile's own pixels per degree and place in the zones. The picture in reach passes through shared memory in
+// bands as high as a tile, and bands without light are passed over.
 #include "perception/glare/fraunhofer_mask_gpu.h"
 #include "perception/glare/glare_gpu.h"
 #include "perception/glare/glare_math.glsl"
@@ -12,21 +13,29 @@
 #include "shaders/scene_statistics.h"
 
 layout(local_size_x = 32, local_size_y = 8) in;
-const uint max_side = 2 * max_near_px + 1;
+const uint most_weights = ((2 * max_near_px + 1) * (2 * max_near_px + 1) + 1) / 2;
+const uint reach_width = tile_width + 2 * max_near_px;
+const float absent = -1.0;
 
 layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
 layout(scalar, binding = 1) readonly buffer State { ObserverState state[]; };
-layout(scalar, binding = 2) readonly buffer NearTiles { uint near_count; uint near_list[]; };
+layout(scalar, binding = 2) readonly buffer NearTiles {
+    uint near_count;
+    uint near_list[];
+};
 layout(scalar, binding = 3) readonly buffer Geometry { EyeGeometry geometry[]; };
-layout(scalar, binding = 4) readonly buffer Table { vec3 mask_table[]; };     // parity, zone, entry
+layout(scalar, binding = 4) readonly buffer Table { vec3 mask_table[]; };  // parity, zone, entry
 layout(scalar, binding = 5) buffer NearLight { vec3 near_light[]; };
 
 layout(scalar, push_constant) uniform PushBlock { MaskNearPush push; };
 
 #include "perception/glare/fraunhofer_mask_lookup.glsl"
 
-shared vec3 weights[max_side * max_side];
-shared uint lit_rows;      // a bit for each row of pixels, from max_near_px above the tile to as many below, that holds light above the threshold
+shared vec3 weights[most_weights];             // by row and column up to the middle: a mask's diffraction is the same on both sides
+shared vec3 light[tile_height * reach_width];  // above the threshold, of the pixels of a band; red `absent`: not there, or not to be seen
+shared uint lit_rows;                          // a bit for each row of the band that holds such light
+shared int lit_left, lit_right;                // and where, in columns from the tile's first
+shared uint losers;                            // of the tile's pixels, have some light to lose
 
 // One table or a mixture of the next two zones', and of the two tables between which the eye is.
 vec3 kernel(vec2 offset, float width, float place) {
@@ -44,10 +53,11 @@ vec3 kernel(vec2 offset, float width, float place) {
 // Steps of one pixel to the side and down as offsets on the glare grid: right and down, rad.
 mat2 pixel_steps(EyeGeometry g, vec3 middle, vec3 across, vec3 down) {
     vec3 forward = vec3(0.0, 0.0, -1.0);
-    if (g.kind == geometry_equirect) {     // the face of the cube that the grid has there
+    if (g.kind == geometry_equirect) {  // the face of the cube that the grid has there
         const vec3 size = abs(middle);
-        forward = size.x > max(size.y, size.z) ? vec3(sign(middle.x), 0.0, 0.0) : size.y > size.z ? vec3(0.0, sign(middle.y), 0.0)
-                                                                                                 : vec3(0.0, 0.0, sign(middle.z));
+        forward = size.x > max(size.y, size.z) ? vec3(sign(middle.x), 0.0, 0.0)
+                  : size.y > size.z            ? vec3(0.0, sign(middle.y), 0.0)
+                                               : vec3(0.0, 0.0, sign(middle.z));
     }
     const vec3 helper = abs(forward.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, -1.0), right = normalize(cross(forward, helper));
     const vec3 up = cross(right, forward);
@@ -71,12 +81,60 @@ int column_of(int x, bool sphere) {
     return x < int(push.width) ? max(x, -1) : -1;
 }
 
-vec3 excess(vec4 pixel, float threshold) {
-    return max(pixel.rgb - threshold, vec3(0.0));
+vec3 excess(vec4 pixel, float threshold) { return max(pixel.rgb - threshold, vec3(0.0)); }
+
+void make_weights(int radius, mat2 steps, float solid_angle, float place) {
+    const int side = 2 * radius + 1, middle = (side * side - 1) / 2;
+    for (int i = int(gl_LocalInvocationIndex); i <= middle; i += int(tile_width * tile_height))
+        weights[i] = i == middle ? vec3(0.0) : pixel_weight(ivec2(i % side, i / side) - radius, steps, solid_angle, place);
+}
+
+// Rows first.y .. first.y + tile_height - 1 of the view, from `radius` columns before column first.x to as many behind the tile.
+void read_band(uint base, ivec2 first, int radius, float threshold, bool sphere) {
+    const uint reach = tile_width + 2 * uint(radius);
+    if (gl_LocalInvocationIndex == 0) {
+        lit_rows = 0u;
+        lit_left = int(reach_width);
+        lit_right = -int(reach_width);
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < tile_height * reach; i += tile_width * tile_height) {
+        const int row = int(i / reach), column = int(i % reach) - radius, y = first.y + row, x = column_of(first.x + column, sphere);
+        vec3 source = vec3(absent);
+        if (x >= 0 && y >= 0 && y < int(push.height)) {
+            const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
+            if (pixel.w > 0.0) source = excess(pixel, threshold);
+        }
+        light[uint(row) * reach_width + i % reach] = source;
+        if (source.r == absent || source == vec3(0.0)) continue;
+        atomicOr(lit_rows, 1u << uint(row));
+        atomicMin(lit_left, column);
+        atomicMax(lit_right, column);
+    }
+    barrier();
+}
+
+// What a band gives to the pixel of this invocation. `row`: of the band's first row, from that pixel. Only a pixel that has light to lose
+// sends some to dark pixels.
+vec3 from_band(int row, int radius, vec3 own) {
+    const bool loses = own != vec3(0.0);
+    const int column = int(gl_LocalInvocationID.x), side = 2 * radius + 1, middle = (side * side - 1) / 2;
+    const int first = loses ? -radius : max(-radius, lit_left - column), last = loses ? radius : min(radius, lit_right - column);
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < int(tile_height); ++k) {
+        const int dy = row + k;
+        if (abs(dy) > radius || (!loses && (lit_rows >> uint(k) & 1u) == 0u)) continue;
+        const int from = k * int(reach_width) + column + radius;
+        for (int dx = first; dx <= last; ++dx) {
+            const vec3 there = light[from + dx];
+            if (there.r != absent) sum += weights[middle - abs(dy * side + dx)] * (there - own);
+        }
+    }
+    return sum;
 }
 
 void main() {
-    const uint lane = gl_LocalInvocationIndex, per_view = push.tiles_x * push.tiles_y;
+    const uint per_view = push.tiles_x * push.tiles_y;
     for (uint slot = gl_WorkGroupID.x; slot < near_count; slot += gl_NumWorkGroups.x) {
         const uint tile = near_list[slot], view = tile / per_view;
         const uvec2 corner = uvec2(tile % per_view % push.tiles_x, tile % per_view / push.tiles_x) * uvec2(tile_width, tile_height);
@@ -84,57 +142,36 @@ void main() {
         const vec2 middle = min(vec2(corner) + vec2(tile_width, tile_height) * 0.5, vec2(push.width, push.height) - 0.5);
         const vec3 across = (geometry_direction(g, middle + vec2(2, 0)) - geometry_direction(g, middle - vec2(2, 0))) * 0.25;
         const vec3 down = (geometry_direction(g, middle + vec2(0, 2)) - geometry_direction(g, middle - vec2(0, 2))) * 0.25;
-        const float solid_angle = length(cross(across, down));
         const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_near_px)));
-        const int side = 2 * radius + 1;
         const uint base = view * push.width * push.height;
         const float threshold = push.near_from < 0.0 ? state[view].tone.scene_white_cd_m2 : push.near_from * state[view].adaptation_cd_m2;
-        const bool sphere = g.kind == geometry_equirect;
-        const vec3 towards = geometry_direction(g, middle);
-        const mat2 steps = pixel_steps(g, towards, across, down);
-        const float place = zone_place(towards, push.zones);
-        // Where is light at all? A lamp fills few of the rows in reach.
-        barrier();
-        if (lane == 0) lit_rows = 0u;
-        barrier();
-        const uint reach_x = tile_width + 2 * uint(radius), reach_y = tile_height + 2 * uint(radius);
-        for (uint i = lane; i < reach_x * reach_y; i += tile_width * tile_height) {
-            const int row = int(i / reach_x) - radius, y = int(corner.y) + row, x = column_of(int(corner.x + i % reach_x) - radius, sphere);
-            if (x < 0 || y < 0 || y >= int(push.height)) continue;
-            const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
-            if (max(pixel.r, max(pixel.g, pixel.b)) > threshold) atomicOr(lit_rows, 1u << uint(row + int(max_near_px)));
-        }
-        barrier();
-        const uint lit = lit_rows;
         const uvec2 px = corner + gl_LocalInvocationID.xy;
         const bool inside = px.x < push.width && px.y < push.height;
-        const uint at = base + px.y * push.width + px.x;
-        if (lit == 0u) {
-            if (inside) near_light[at] = vec3(0.0);
-            continue;
-        }
-        for (uint i = lane; i < uint(side * side); i += tile_width * tile_height) {
-            const ivec2 d = ivec2(int(i) % side, int(i) / side) - radius;
-            weights[i] = d == ivec2(0) ? vec3(0.0) : pixel_weight(d, steps, solid_angle, place);
-        }
-        barrier();
-        if (!inside) continue;
+        const uint at = base + min(px.y, push.height - 1) * push.width + min(px.x, push.width - 1);
         const vec4 here = scene[at];
-        const vec3 own = push.leaves != 0 ? excess(here, threshold) : vec3(0.0);
+        const bool wanted = inside && here.w > 0.0;
+        const vec3 own = wanted && push.leaves != 0 ? excess(here, threshold) : vec3(0.0);
+        barrier();
+        if (gl_LocalInvocationIndex == 0) losers = 0u;
+        barrier();
+        if (own != vec3(0.0)) atomicOr(losers, 1u);
+        barrier();
+        const int bands = (radius + int(tile_height) - 1) / int(tile_height);
+        bool have_weights = false;
         vec3 sum = vec3(0.0);
-        for (int dy = -radius; dy <= radius; ++dy) {
-            const int y = int(px.y) + dy;
-            if (y < 0 || y >= int(push.height)) continue;
-            // Rows without light matter only to pixels that have some to lose.
-            const bool row_lit = (lit >> uint(y - int(corner.y) + int(max_near_px)) & 1u) != 0u;
-            if (!row_lit && own == vec3(0.0)) continue;
-            for (int dx = -radius; dx <= radius; ++dx) {
-                const int x = column_of(int(px.x) + dx, sphere);
-                if (x < 0) continue;
-                const vec4 there = scene[base + uint(y) * push.width + uint(x)];
-                if (there.w > 0.0) sum += weights[(dy + radius) * side + dx + radius] * (excess(there, threshold) - own);
+        for (int band = -bands; band <= bands; ++band) {
+            const int row = band * int(tile_height);
+            barrier();
+            read_band(base, ivec2(corner) + ivec2(0, row), radius, threshold, g.kind == geometry_equirect);
+            if (lit_rows == 0u && losers == 0u) continue;
+            if (!have_weights) {
+                const vec3 towards = geometry_direction(g, middle);
+                make_weights(radius, pixel_steps(g, towards, across, down), length(cross(across, down)), zone_place(towards, push.zones));
+                have_weights = true;
+                barrier();
             }
+            if (wanted) sum += from_band(row - int(gl_LocalInvocationID.y), radius, own);
         }
-        near_light[at] = here.w > 0.0 ? sum : vec3(0.0);
+        if (inside) near_light[at] = sum;
     }
 }
