@@ -34,7 +34,7 @@ double strip_coverage(double distance, double half_width, dvec2 normal) {
 
 double disc_coverage(dvec2 at, double radius, double pitch) {
     const double r = glm::length(at);
-    if (r < 1e-9) return 1;
+    if (r < 1e-9 || r < radius - pitch) return 1;
     return edge_coverage((radius - r) / pitch, at.x / r, at.y / r);
 }
 
@@ -50,6 +50,8 @@ double polygon_coverage(dvec2 at, double radius, int sides, double rotation, dou
 }
 
 double lids_coverage(dvec2 at, const LidEdges& lids, double pitch) {
+    const double within = std::min(lids.upper - at.y, at.y - lids.lower) - at.x * at.x / (2 * lid_radius_mm);
+    if (within > 2 * pitch) return 1;
     const double slope = at.x / lid_radius_mm, bend = at.x * at.x / (2 * lid_radius_mm), steep = std::sqrt(1 + slope * slope);
     const dvec2 up_normal{slope / steep, 1 / steep};
     const double under = (lids.upper - bend - at.y) / steep, over = (at.y - lids.lower - bend) / steep;
@@ -73,25 +75,27 @@ double filter_coverage(dvec2 at, const FraunhoferMaskParams& p, double pitch) {
 
 // --- eyelashes ---
 
-// What covers the samples of one lash: a piece from a to b, cut off at each end by the line with that normal.
-void draw_strip(const Plane& plane, dvec2 a, dvec2 b, dvec2 cut_a, dvec2 cut_b, double half_width, std::vector<double>& opaque,
-                std::vector<int>& touched) {
+// What covers the samples of one lash: a piece from a to b, cut off at each end by the line with that normal. Only where light `passes`.
+void draw_strip(const Plane& plane, dvec2 a, dvec2 b, dvec2 cut_a, dvec2 cut_b, double half_width, const ImageD& passes,
+                std::vector<double>& opaque, std::vector<int>& touched) {
     const double length = glm::length(b - a), pitch = plane.pitch();
     if (length < 1e-9) return;
     const dvec2 along = (b - a) / length, normal{-along.y, along.x};
-    const double reach = half_width + 2 * pitch;
-    const int x0 = plane.first(std::min(a.x, b.x) - reach), x1 = plane.last(std::max(a.x, b.x) + reach);
-    const int y0 = plane.first(-std::max(a.y, b.y) - reach), y1 = plane.last(-std::min(a.y, b.y) + reach);
+    // Beside the piece, and past an end that a turn of half a radian may have cut obliquely.
+    const double beside = half_width + 2 * pitch, past = 0.25 * half_width + 2 * pitch;
+    const dvec2 box = past * glm::abs(along) + beside * glm::abs(normal), low = glm::min(a, b) - box, high = glm::max(a, b) + box;
+    const int x0 = plane.first(low.x), x1 = plane.last(high.x), y0 = plane.first(-high.y), y1 = plane.last(-low.y);
     for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) {
             const dvec2 from = plane.centre(x, y) - a;
-            const double t = glm::dot(from, along), d = glm::dot(from, normal) / pitch;
-            if (std::abs(d) * pitch > reach || t < -reach || t > length + reach) continue;
-            const double ends = edge_coverage(glm::dot(from, cut_a) / pitch, cut_a.x, cut_a.y) *
-                                edge_coverage(glm::dot(b - plane.centre(x, y), cut_b) / pitch, cut_b.x, cut_b.y);
-            const double share = std::clamp(strip_coverage(d, half_width / pitch, normal), 0.0, 1.0) * ends;
-            if (share <= 0) continue;
+            const double t = glm::dot(from, along), d = glm::dot(from, normal);
+            if (std::abs(d) > beside || t < -past || t > length + past) continue;
             const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.n) + static_cast<std::size_t>(x);
+            if (passes.data[at] == 0) continue;
+            const double ends = edge_coverage(glm::dot(from, cut_a) / pitch, cut_a.x, cut_a.y) *
+                                edge_coverage(glm::dot(b - a - from, cut_b) / pitch, cut_b.x, cut_b.y);
+            const double share = std::clamp(strip_coverage(d / pitch, half_width / pitch, normal), 0.0, 1.0) * ends;
+            if (share <= 0) continue;
             if (opaque[at] == 0) touched.push_back(static_cast<int>(at));
             // Pieces of one lash share the samples at a joint, each with its own part of them.
             opaque[at] = std::min(opaque[at] + share, 1.0);
@@ -109,7 +113,7 @@ void draw_lashes(const FraunhoferMaskParams& p, double open, double shift_mm, co
         const auto along = [&](int k) { return glm::normalize(joint(k + 1) - joint(k)); };
         // Pieces meet at the line that halves the angle between them: neither a gap nor an overlap.
         const auto cut = [&](int k) { return glm::normalize(along(std::max(k - 1, 0)) + along(std::min(k, count - 1))); };
-        for (int k = 0; k < count; ++k) draw_strip(plane, joint(k), joint(k + 1), cut(k), cut(k + 1), half_width, opaque, touched);
+        for (int k = 0; k < count; ++k) draw_strip(plane, joint(k), joint(k + 1), cut(k), cut(k + 1), half_width, passes, opaque, touched);
         for (const int i : touched) {
             passes.data[static_cast<std::size_t>(i)] *= 1 - opaque[static_cast<std::size_t>(i)];
             opaque[static_cast<std::size_t>(i)] = 0;

@@ -12,9 +12,9 @@
 ENTOPTIC_MATH_BEGIN(perception::fraunhofer_mask)
 
 const uint mask_columns = 512u;      // over pi
-const uint mask_rows = 768u;
+const uint mask_rows = 1024u;        // to 9 degrees
 const uint mask_levels = 8u;
-const uint mask_entries = 524280u;   // of all levels
+const uint mask_entries = 699040u;   // of all levels
 
 // Between columns, rad; between rows, of log(sine): square cells.
 FN real mask_step() { return LIT(0.006135923151542565); }

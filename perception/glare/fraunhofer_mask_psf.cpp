@@ -33,16 +33,6 @@ void transform_line(Complex* line, Complex* spare, int n, const std::vector<Comp
     if (from != line) std::copy(from, from + n, line);
 }
 
-void transpose(std::vector<Complex>& plane, int n) {
-    constexpr int block = 16;
-    for (int y0 = 0; y0 < n; y0 += block)
-        for (int x0 = y0; x0 < n; x0 += block)
-            for (int y = y0; y < std::min(y0 + block, n); ++y)
-                for (int x = std::max(x0, y + 1); x < std::min(x0 + block, n); ++x)
-                    std::swap(plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x)],
-                              plane[static_cast<std::size_t>(x) * static_cast<std::size_t>(n) + static_cast<std::size_t>(y)]);
-}
-
 // Density times f^3 over the logarithm of frequency and azimuth; rows as those of the table, from its first sine at the longest wavelength.
 struct FrequencyTable {
     double first_per_mm = 0;
@@ -58,8 +48,8 @@ struct FrequencyTable {
 
 // Between samples of the density, bins from the middle.
 double density_at(const Psf& psf, double x, double y) {
-    const double u = x + psf.n / 2, v = y + psf.n / 2;
-    const int i = std::clamp(static_cast<int>(std::floor(u)), 0, psf.n - 2), j = std::clamp(static_cast<int>(std::floor(v)), 0, psf.n - 2);
+    const double u = x + psf.most, v = y + psf.most;
+    const int i = std::clamp(static_cast<int>(u), 0, 2 * psf.most - 1), j = std::clamp(static_cast<int>(v), 0, 2 * psf.most - 1);
     const double a = u - i, b = v - j;
     return (1 - b) * ((1 - a) * psf.density.at(i, j, 0) + a * psf.density.at(i + 1, j, 0)) +
            b * ((1 - a) * psf.density.at(i, j + 1, 0) + a * psf.density.at(i + 1, j + 1, 0));
@@ -70,7 +60,8 @@ FrequencyTable make_frequency_table(const Psf& psf, double longest_um) {
     t.first_per_mm = mask_first_sine() / (longest_um * 1e-3);
     const double end = psf.used_per_mm();
     // The last row stands for all beyond: the mean of the outermost part, since a single row shows one phase of the fringes only.
-    const int inner = std::max(static_cast<int>(std::log(end / t.first_per_mm) / mask_step()), 2), averaged = std::min(inner, 77);   // a factor of 1.6
+    const int inner = std::max(static_cast<int>(std::log(end / t.first_per_mm) / mask_step()), 2),
+              averaged = std::min(inner, 77);  // a factor of 1.6
     t.rows = inner + 1;
     t.value.assign(static_cast<std::size_t>(t.rows) * mask_columns, 0.0);
     for (int row = 0; row < inner; ++row) {
@@ -96,27 +87,49 @@ FrequencyTable make_frequency_table(const Psf& psf, double longest_um) {
 
 void add_levels(std::vector<vec3>& table) {
     for (uint level = 1; level < mask_levels; ++level) {
-        const uint columns = mask_columns >> level, rows = mask_rows >> level, from = mask_level_start(level - 1), to = mask_level_start(level);
+        const uint columns = mask_columns >> level, rows = mask_rows >> level, from = mask_level_start(level - 1),
+                   to = mask_level_start(level);
         for (uint row = 0; row < rows; ++row)
             for (uint column = 0; column < columns; ++column) {
                 const uint at = from + 2 * row * 2 * columns + 2 * column;
-                table[to + row * columns + column] = 0.25f * (table[at] + table[at + 1] + table[at + 2 * columns] + table[at + 2 * columns + 1]);
+                table[to + row * columns + column] =
+                    0.25f * (table[at] + table[at + 1] + table[at + 2 * columns] + table[at + 2 * columns + 1]);
             }
     }
 }
 
 }  // namespace
 
-void fourier_transform(std::vector<Complex>& plane, int n) {
-    std::vector<Complex> turns(static_cast<std::size_t>(n) / 2), spare(static_cast<std::size_t>(n));
+std::vector<Complex> inner_transform(const ImageD& plane, int most) {
+    const int n = plane.width, columns = most + 1;
+    std::vector<Complex> turns(static_cast<std::size_t>(n) / 2), spare(static_cast<std::size_t>(n)), line(static_cast<std::size_t>(n));
     for (int k = 0; k < n / 2; ++k) turns[static_cast<std::size_t>(k)] = std::polar(1.0, -2 * pi * k / n);
-    for (int pass = 0; pass < 2; ++pass) {
-        for (int y = 0; y < n; ++y) {
-            Complex* line = &plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(n)];
-            if (std::any_of(line, line + n, [](Complex c) { return c != Complex(0); })) transform_line(line, spare.data(), n, turns);
+    std::vector<Complex> rows(static_cast<std::size_t>(n) * static_cast<std::size_t>(columns));
+    const auto row = [&](int y, int u) -> Complex& {
+        return rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(u)];
+    };
+    // Two rows as real and imaginary part of one.
+    for (int y = 0; y < n; y += 2) {
+        const auto from = plane.data.begin() + static_cast<std::ptrdiff_t>(y) * n;
+        if (std::all_of(from, from + 2 * n, [](double t) { return t == 0; })) continue;
+        for (int x = 0; x < n; ++x) line[static_cast<std::size_t>(x)] = {from[x], from[n + x]};
+        transform_line(line.data(), spare.data(), n, turns);
+        for (int u = 0; u < columns; ++u) {
+            const Complex plus = line[static_cast<std::size_t>(u)], minus = std::conj(line[static_cast<std::size_t>((n - u) % n)]);
+            row(y, u) = 0.5 * (plus + minus);
+            row(y + 1, u) = Complex(0, -0.5) * (plus - minus);
         }
-        transpose(plane, n);
     }
+    const int side = 2 * most + 1;
+    std::vector<Complex> out(static_cast<std::size_t>(columns) * static_cast<std::size_t>(side));
+    for (int u = 0; u < columns; ++u) {
+        for (int y = 0; y < n; ++y) line[static_cast<std::size_t>(y)] = row(y, u);
+        transform_line(line.data(), spare.data(), n, turns);
+        for (int v = -most; v <= most; ++v)
+            out[static_cast<std::size_t>(u) * static_cast<std::size_t>(side) + static_cast<std::size_t>(v + most)] =
+                line[static_cast<std::size_t>((v + n) % n)];
+    }
+    return out;
 }
 
 PsfSampling psf_sampling(int n, double plane_mm, double wavelength_nm) {
@@ -125,20 +138,22 @@ PsfSampling psf_sampling(int n, double plane_mm, double wavelength_nm) {
 }
 
 Psf make_psf(const ApertureRaster& aperture) {
-    const int n = aperture.n;
-    Psf psf{n, 1 / aperture.plane_mm, ImageD(n, n, 1)};
+    const int n = aperture.n, most = n / 4, side = 2 * most + 1;
+    Psf psf{most, 1 / aperture.plane_mm, ImageD(side, side, 1)};
     if (aperture.passed <= 0) return psf;
-    std::vector<Complex> plane(aperture.amplitude.data.begin(), aperture.amplitude.data.end());
-    fourier_transform(plane, n);
+    const std::vector<Complex> transformed = inner_transform(aperture.amplitude, most);
     // Parseval: |F|^2 over all frequencies sums to n^2 times what passes. A sample is the mean over its square, which damps |F|^2 by sinc^2 of
     // each frequency (trap L12).
-    std::vector<double> undamped(static_cast<std::size_t>(n));
-    for (int k = 0; k < n; ++k) undamped[static_cast<std::size_t>(k)] = std::pow(sinc(static_cast<double>(k - n / 2) / n), -2);
+    std::vector<double> undamped(static_cast<std::size_t>(most) + 1);
+    for (int k = 0; k <= most; ++k) undamped[static_cast<std::size_t>(k)] = std::pow(sinc(static_cast<double>(k) / n), -2);
     const double scale = 1 / (static_cast<double>(n) * n * aperture.passed * psf.bin_per_mm * psf.bin_per_mm);
-    for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x) {
-            const auto from = static_cast<std::size_t>((y + n / 2) % n) * static_cast<std::size_t>(n) + static_cast<std::size_t>((x + n / 2) % n);
-            psf.density.at(x, y, 0) = std::norm(plane[from]) * undamped[static_cast<std::size_t>(x)] * undamped[static_cast<std::size_t>(y)] * scale;
+    for (int u = 0; u <= most; ++u)
+        for (int v = -most; v <= most; ++v) {
+            const Complex f =
+                transformed[static_cast<std::size_t>(u) * static_cast<std::size_t>(side) + static_cast<std::size_t>(v + most)];
+            const double energy =
+                std::norm(f) * undamped[static_cast<std::size_t>(u)] * undamped[static_cast<std::size_t>(std::abs(v))] * scale;
+            psf.density.at(most + u, most + v, 0) = psf.density.at(most - u, most - v, 0) = energy;
         }
     return psf;
 }
@@ -176,7 +191,7 @@ double diffracted_beyond(const std::vector<vec3>& table, double sine) {
     const auto ring = [&](uint row) {
         glm::dvec3 total{0};
         for (uint column = 0; column < mask_columns; ++column) total += glm::dvec3(table[row * mask_columns + column]);
-        return 2 * mask_step() * total;          // both halves of the turn
+        return 2 * mask_step() * total;  // both halves of the turn
     };
     // K theta dtheta = T theta^-2 dtheta = T / theta dlog(theta).
     for (uint row = static_cast<uint>(std::clamp(std::floor(mask_row(sine)), 0.0, mask_rows - 1.0)); row < mask_rows; ++row)

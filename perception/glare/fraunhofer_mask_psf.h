@@ -11,8 +11,9 @@
 
 namespace entoptic::perception {
 
-// In-place transform of rows x rows values, a power of two a side; sign -1 in the exponent. Rows that are all zero cost nothing.
-void fourier_transform(std::vector<std::complex<double>>& plane, int n);
+// Transform of n x n real values, n a power of two, sign -1 in the exponent: frequencies (0 .. most, -most .. most), `most` < n / 2, in columns of
+// one horizontal frequency: (u, v) at u (2 most + 1) + v + most. The others are conjugates. Rows that are all zero cost nothing.
+std::vector<std::complex<double>> inner_transform(const ImageD& plane, int most);
 
 // How n samples of a plane see the light of one wavelength (facts 3.3a).
 struct PsfSampling {
@@ -20,12 +21,13 @@ struct PsfSampling {
 };
 PsfSampling psf_sampling(int n, double plane_mm, double wavelength_nm);
 
-// Light in frequency space, 1/mm; frequency is sin(angle) / wavelength.
+// Light in frequency space: the inner half of the extent, farther out edges alias (facts 3.3, trap L12).
 struct Psf {
-    int n = 0;
-    double bin_per_mm = 0;        // between samples: 1 / plane
-    ImageD density;               // of energy, per (1/mm)^2, energy of all 1; frequency 0 at (n/2, n/2), rows downwards
-    double used_per_mm() const { return 0.25 * n * bin_per_mm; }     // the inner half of the extent (facts 3.3, trap L12)
+    int most = 0;           // bins from the middle
+    double bin_per_mm = 0;  // between samples: 1 / plane
+    ImageD density;         // of energy, per (1/mm)^2, energy of all frequencies 1; frequency 0 at (most, most), rows downwards
+    double at(int x, int y) const { return density.at(most + x, most + y, 0); }  // bins from the middle
+    double used_per_mm() const { return most * bin_per_mm; }
 };
 // An aperture that passes no light gives a density of 0.
 Psf make_psf(const ApertureRaster& aperture);
