@@ -16,11 +16,13 @@ vec3 mask_value(uint first, uint level, float row, float column) {
                mix(mask_table[base + columns + left], mask_table[base + columns + right], across), y - float(r));
 }
 
-// Light diffracted per sr to an offset (right, down; rad), as a mean over a square of this width about it.
+// Light diffracted per sr to an offset (right, down; rad), as a mean over a square of this width about it: that of theta^-3 is by its Laplacian,
+// 9 theta^-5, larger than in the middle.
 vec3 mask_kernel(uint first, vec2 offset, float width) {
-    const float theta = length(offset), sine = sin(min(theta, 1.5707963));
-    const uint level = uint(mask_level(theta, width) + 0.5);
-    return mask_value(first, level, mask_row(sine), mask_column(offset)) / (sine * sine * sine);
+    const float theta = length(offset), sine = sin(min(theta, 1.5707963)), share = width / theta;
+    // The finer of two levels: between entries there is interpolation, which widens them.
+    const uint level = uint(mask_level(theta, width));
+    return mask_value(first, level, mask_row(sine), mask_column(offset)) * ((1.0 + 0.375 * share * share) / (sine * sine * sine));
 }
 
 #endif

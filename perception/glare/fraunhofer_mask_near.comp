@@ -67,7 +67,7 @@ mat2 pixel_steps(EyeGeometry g, vec3 middle, vec3 across, vec3 down) {
 
 // Integral of the kernel over the pixel at d, sr.
 vec3 pixel_weight(ivec2 d, mat2 steps, float solid_angle, float place) {
-    const int samples = max(abs(d.x), abs(d.y)) <= 2 ? 8 : 3;
+    const int samples = max(abs(d.x), abs(d.y)) <= 2 ? 8 : 4;
     const float width = sqrt(solid_angle) / float(samples);
     vec3 sum = vec3(0.0);
     for (int j = 0; j < samples; ++j)

@@ -80,6 +80,7 @@ struct Scene {
     ImageF image;
     std::vector<std::string> settings;
     float open;
+    double most_relative, most_codes;      // of the mean errors: beside streaks, which the grid makes wider than a pixel, they are large
 };
 
 TEST(FraunhoferMask, GpuAndReferenceAgree) {
@@ -89,10 +90,10 @@ TEST(FraunhoferMask, GpuAndReferenceAgree) {
     ImageF coloured = uniform(25, 21, 1);
     fill(coloured, 12, 10, 1, 1, 1e6f, 4e5f, 1e5f);
     const Scene list[] = {
-        {"round pupil", lamp, {"glare.texel_px=1"}, 1},
-        {"lashes half closed", lamp, {"glare.texel_px=1"}, 0.55f},
-        {"hexagon three lines", coloured, {"glare.texel_px=1", "glare.blades=6", "glare.lids=0", "glare.lashes=0", "glare.three_lines=1"}, 1},
-        {"cross-screen filter", lamp, {"glare.texel_px=1", "glare.filter_directions=2", "glare.lids=0", "glare.lashes=0"}, 1},
+        {"round pupil", lamp, {"glare.texel_px=1"}, 1, 0.01, 0.3},
+        {"lashes half closed", lamp, {"glare.texel_px=1"}, 0.55f, 0.1, 4},
+        {"hexagon three lines", coloured, {"glare.texel_px=1", "glare.blades=6", "glare.lids=0", "glare.lashes=0", "glare.three_lines=1"}, 1, 0.3, 7},
+        {"cross-screen filter", lamp, {"glare.texel_px=1", "glare.filter_directions=2", "glare.lids=0", "glare.lashes=0"}, 1, 0.4, 11},
     };
     for (const Scene& s : list) {
         const ImageF gpu = Glare(g, model(s.settings)).at(s.image, 4, s.open);
@@ -109,9 +110,8 @@ TEST(FraunhoferMask, GpuAndReferenceAgree) {
         ledger(name, s.what, "GPU against reference p99 relative", e.p99);
         ledger(name, s.what, "GPU against reference mean codes", display.mean);
         ledger(name, s.what, "light added over reference's", got / want);
-        // Mostly beside the streaks, which the grid makes wider than a pixel.
-        EXPECT_LT(e.mean, 0.45) << s.what;
-        EXPECT_LT(display.mean, 12) << s.what;
+        EXPECT_LT(e.mean, s.most_relative) << s.what;
+        EXPECT_LT(display.mean, s.most_codes) << s.what;
         EXPECT_NEAR(got / want, 1, 0.03) << s.what;
         if (std::getenv("ENTOPTIC_MASK_PRINT"))
             for (int y = 4; y < 17; ++y) {
