@@ -1,4 +1,5 @@
-// People whose eyes come with the program: how they differ from the default one, 30 years old with brown eyes.
+// People whose eyes come with the program: how they differ from the default one, 30 years old with brown eyes. As in all files, that default
+// eye is also the one which looks at the display (docs/observers.md).
 #include "app/observer_file.h"
 
 namespace entoptic::app {
@@ -22,7 +23,7 @@ glare.age = 65
 glare.straylight_factor = 2 # choice: log s up by 0.3, to about 1.45 log units
 pupil.age = 65
 )"},
-        {"night-driver", R"(description = "45 years, light eyes, adapted to the dark slowly: a hard case for headlamps"
+        {"night-driver", R"(description = "45 years, light eyes: more straylight of headlamps"
 [settings]
 glare.age = 45
 glare.pigment = 1.2         # CIE 146:2002: light blue

@@ -24,6 +24,38 @@ struct PersonSetting {
     double value = 0;
 };
 
+using ParameterList = std::vector<const perception::ParameterInfo*>;
+
+// This parameter of every model of the slot that has it.
+ParameterList parameters_named(std::string_view slot, std::string_view name) {
+    ParameterList list;
+    for (const perception::ModelEntry* entry : perception::models())
+        for (const perception::ParameterInfo& p : entry->parameters)
+            if (entry->slot == slot && name == p.name) list.push_back(&p);
+    return list;
+}
+
+std::string ranges_of(const ParameterList& list) {
+    std::vector<std::string> texts;
+    for (const perception::ParameterInfo* p : list)
+        if (const std::string text = range_text(*p); std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+    return fmt::format("{}", fmt::join(texts, ", or "));
+}
+
+Result<double> value_of(const std::string& path, const toml::node& node, std::string_view slot, std::string_view name) {
+    const auto slots = perception::slots();
+    if (std::find(slots.begin(), slots.end(), slot) == slots.end())
+        return wrong(path, node, fmt::format("there is no slot '{}'. Slots: {}.", slot, fmt::join(slots, ", ")));
+    const ParameterList known = parameters_named(slot, name);
+    if (known.empty())
+        return wrong(path, node, fmt::format("no model of the slot '{}' has a parameter '{}'. `entoptic effects` lists what there is.", slot, name));
+    const auto number = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!number) return wrong(path, node, fmt::format("'{}.{}' must be a number: {}.", slot, name, ranges_of(known)));
+    if (std::none_of(known.begin(), known.end(), [&](const auto* p) { return p->allows(*number); }))
+        return wrong(path, node, fmt::format("{}.{} = {} is out of range: {}.", slot, name, *number, ranges_of(known)));
+    return *number;
+}
+
 Result<std::vector<PersonSetting>> settings_of(const std::string& path, const toml::table& table) {
     std::vector<PersonSetting> out;
     for (const auto& [name, node] : table) {
@@ -36,10 +68,8 @@ Result<std::vector<PersonSetting>> settings_of(const std::string& path, const to
             const auto* values = parameters.as_table();
             if (!values) return wrong(path, parameters, fmt::format("write '{}.PARAMETER = NUMBER'.", slot.str()));
             for (const auto& [parameter, value] : *values) {
-                const auto number = value.is_number() ? value.value<double>() : std::nullopt;
-                if (!number || !std::isfinite(*number))
-                    return wrong(path, value, fmt::format("'{}.{}' must be a number.", slot.str(), parameter.str()));
-                out.push_back({std::string(slot.str()), std::string(parameter.str()), *number});
+                ENTOPTIC_TRY(number, value_of(path, value, slot.str(), parameter.str()));
+                out.push_back({std::string(slot.str()), std::string(parameter.str()), number});
             }
         }
     }
@@ -66,12 +96,13 @@ Result<std::vector<PersonSetting>> read_observer(const std::string& name) {
     return usage_error(fmt::format("There is no observer '{}': '{}' cannot be read. Observers that come with the program: {}.", name, path.string(), fmt::join(known, ", ")));
 }
 
-// A person's number that the chosen model takes in another range says which file and key asked for it.
+// A person's number that the chosen model takes in another range than the slot's other models says which observer and key asked for it.
 Result<void> check_range(const perception::Selection& selection, const PersonSetting& wanted, const std::string& observer) {
-    for (const perception::ParameterInfo& p : selection.find(wanted.slot)->entry->parameters)
+    const perception::ModelEntry& entry = *selection.find(wanted.slot)->entry;
+    for (const perception::ParameterInfo& p : entry.parameters)
         if (wanted.parameter == p.name && !p.allows(wanted.value))
-            return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range: {:g} to {:g} {}.", observer, wanted.slot, wanted.parameter, wanted.value, p.min,
-                                           p.max, p.unit));
+            return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range of the model {}: {}.", observer, wanted.slot, wanted.parameter, wanted.value,
+                                           entry.name, range_text(p)));
     return {};
 }
 
@@ -82,11 +113,23 @@ bool has_parameter(const perception::Selection& selection, const PersonSetting& 
     return std::any_of(list.begin(), list.end(), [&](const perception::ParameterInfo& p) { return wanted.parameter == p.name; });
 }
 
+// Who looks at the display, where a person's file does not say: the mean eye that the person's numbers are compared with (CIE 146:2002; the
+// models' defaults for the person).
+const PersonSetting mean_wearer[] = {{"glare", "wearer_age", 30}, {"glare", "wearer_pigment", 0.5}, {"glare", "wearer_straylight_factor", 1}};
+
+std::vector<PersonSetting> with_wearer(std::vector<PersonSetting> person) {
+    for (const PersonSetting& mean : mean_wearer)
+        if (std::none_of(person.begin(), person.end(), [&](const PersonSetting& s) { return s.slot == mean.slot && s.parameter == mean.parameter; }))
+            person.push_back(mean);
+    return person;
+}
+
 // Without regard to doublings.
 Result<perception::Selection> select_for(const std::string& preset, const std::vector<std::string>& models, const std::vector<std::string>& settings,
                                          const std::string& observer) {
     if (observer.empty()) return perception::select(preset, models, settings);
-    ENTOPTIC_TRY(person, read_observer(observer));
+    ENTOPTIC_TRY(said, read_observer(observer));
+    const std::vector<PersonSetting> person = with_wearer(std::move(said));
     ENTOPTIC_TRY(chosen, perception::select(preset, models, {}));
     std::vector<std::string> all;
     for (const PersonSetting& s : person)

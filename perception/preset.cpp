@@ -19,10 +19,14 @@ std::vector<std::string> model_names(std::string_view slot) {
 
 using ModelOfSlot = std::map<std::string, Choice, std::less<>>;
 
-Result<void> choose(ModelOfSlot& chosen, std::string_view slot, std::string_view model) {
+Result<void> expect_slot(std::string_view slot) {
     const auto all = slots();
-    if (std::find(all.begin(), all.end(), slot) == all.end())
-        return usage_error(fmt::format("There is no slot '{}'. Slots: {}.", slot, fmt::join(all, ", ")));
+    if (std::find(all.begin(), all.end(), slot) != all.end()) return {};
+    return usage_error(fmt::format("There is no slot '{}'. Slots: {}.", slot, fmt::join(all, ", ")));
+}
+
+Result<void> choose(ModelOfSlot& chosen, std::string_view slot, std::string_view model) {
+    ENTOPTIC_CHECK(expect_slot(slot));
     if (model == "none") {
         chosen.erase(std::string(slot));
         return {};
@@ -34,6 +38,7 @@ Result<void> choose(ModelOfSlot& chosen, std::string_view slot, std::string_view
 }
 
 Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::string_view name, double value) {
+    ENTOPTIC_CHECK(expect_slot(slot));
     const auto found = chosen.find(slot);
     if (found == chosen.end())
         return usage_error(fmt::format("Nothing to set: the slot '{}' has no model in this choice. Add --model {}=NAME.", slot, slot));
@@ -44,7 +49,7 @@ Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::stri
         names.emplace_back(info.name);
         if (name != info.name) continue;
         if (!info.allows(value))
-            return usage_error(fmt::format("{}.{} = {} is out of range: {} to {} {}.", slot, name, value, info.min, info.max, info.unit));
+            return usage_error(fmt::format("{}.{} = {} is out of range: {}.", slot, name, value, range_text(info)));
         choice.parameters[i] = static_cast<float>(value);
         return {};
     }
@@ -52,10 +57,20 @@ Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::stri
     return usage_error(fmt::format("The model '{}' has no parameter '{}'. Parameters: {}.", choice.entry->name, name, fmt::join(names, ", ")));
 }
 
-// False when the model has no file of this name.
+// A usage error that names the models which have such a file.
+tl::unexpected<Error> no_file(std::string_view slot, std::string_view name) {
+    std::vector<std::string> with;
+    for (const ModelEntry* entry : models())
+        for (const FileInfo& file : entry->files)
+            if (entry->slot == slot && file.name == name) with.push_back(fmt::format("{}={}", slot, entry->name));
+    return usage_error(fmt::format("{}.{} is a file that only {} reads. Add --model {}.", slot, name, fmt::join(with, " and "), with.front()));
+}
+
+// False when no model of the slot has a file of this name.
 Result<bool> set_file(ModelOfSlot& chosen, std::string_view slot, std::string_view name, const std::string& path) {
+    if (!names_file(slot, name)) return false;
     const auto found = chosen.find(slot);
-    if (found == chosen.end()) return false;
+    if (found == chosen.end()) return no_file(slot, name);
     for (const FileInfo& info : found->second.entry->files) {
         if (name != info.name) continue;
         if (path.empty()) {
@@ -66,7 +81,7 @@ Result<bool> set_file(ModelOfSlot& chosen, std::string_view slot, std::string_vi
         found->second.files[info.name] = path;
         return true;
     }
-    return false;
+    return no_file(slot, name);
 }
 
 Result<void> set_foveation(FoveationSettings& foveation, std::string_view name, std::string_view value) {
@@ -88,6 +103,11 @@ Result<void> set_foveation(FoveationSettings& foveation, std::string_view name, 
 }
 
 }  // namespace
+
+std::string range_text(const ParameterInfo& p) {
+    const std::string_view unit = p.unit;
+    return fmt::format("{:g} to {:g}{}", p.min, p.max, unit == "1" || unit == "bool" ? "" : fmt::format(" {}", unit));
+}
 
 const Choice* Selection::find(std::string_view slot) const {
     const auto found = std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.entry->slot == slot; });

@@ -37,6 +37,9 @@ struct Preset {
 std::span<const Preset> presets();
 inline constexpr std::string_view default_preset = "combined";
 
+// "10 to 90 years"; switches and pure numbers have no unit.
+std::string range_text(const ParameterInfo& parameter);
+
 // `models` holds "slot=model" (model may be "none"), `settings` "slot.parameter=value" or "slot.file=path"; later ones win.
 // "foveation.inverse=off|exact|fitted" and "foveation.reduction=1..4" say how large an image the models work on.
 // Errors (usage) name the choices there are: unknown preset, slot, model, parameter; value not a number or out of range; a file that the
