@@ -96,11 +96,12 @@ bool read_settings(const toml::node& node, const Source& source, Config& c) {
         const auto* table = parameters.as_table();
         if (!table) return false;
         for (const auto& [name, value] : *table) {
-            const auto path = perception::names_file(slot.str(), name.str()) ? value.value_exact<std::string>() : std::nullopt;
+            const bool is_word = perception::names_file(slot.str(), name.str()) || (slot == "foveation" && name == "inverse");
+            const auto word = is_word ? value.value_exact<std::string>() : std::nullopt;
             const auto number = value.is_number() ? value.value<double>() : std::nullopt;
-            if (!path && (!number || !std::isfinite(*number))) return false;
+            if (!word && (!number || !std::isfinite(*number))) return false;
             c.settings.push_back(
-                {fmt::format("{}.{}={}", slot.str(), name.str(), path ? *path : fmt::format("{}", *number)), source.origin(value)});
+                {fmt::format("{}.{}={}", slot.str(), name.str(), word ? *word : fmt::format("{}", *number)), source.origin(value)});
         }
     }
     return true;
@@ -190,7 +191,7 @@ const Key keys[] = {
      ENTOPTIC_ORIGIN(observer)},
     {"models", "a table of slot = \"model\"", "other models than the preset's", true, read_models,
      [](const Config& c) { return joined(c.models); }, [](const Config& c) { return origins(c.models); }},
-    {"settings", "a table of slot.parameter = number, or = \"path\" for a file", "other parameters than the preset's", true, read_settings,
+    {"settings", "a table of slot.parameter = number, = \"path\" for a file, or foveation.inverse = \"off\", \"exact\" or \"fitted\"", "other parameters than the preset's", true, read_settings,
      [](const Config& c) { return joined(c.settings); }, [](const Config& c) { return origins(c.settings); }},
     {"luminance", "a number from 1e-6 to 1e6", "cd/m² of linear 1 in layers that do not say; default: the panel's white", true,
      read_luminance, [](const Config& c) { return c.luminance.value ? fmt::format("{:g}", *c.luminance.value) : "(the panel's white)"; },

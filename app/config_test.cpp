@@ -64,6 +64,8 @@ TEST_F(Configuration, EveryValueKnowsItsLine) {
     EXPECT_EQ(config.dump_every.value, 5u);
     EXPECT_EQ(config.dump_every.origin, path + ":5");
     EXPECT_EQ(config.setting_texts(), std::vector<std::string>{"glare.k=4"});
+    write("config.toml", "[settings]\nfoveation.inverse = \"exact\"\nfoveation.reduction = 2\n");
+    EXPECT_EQ(loaded().setting_texts(), (std::vector<std::string>{"foveation.inverse=exact", "foveation.reduction=2"}));
     EXPECT_EQ(config.model_names(), std::vector<std::string>{"acuity=none"});
 }
 
