@@ -6,10 +6,11 @@
 
 namespace entoptic::perception {
 
-// Who looks at what the stage makes.
+// Who looks at what the stage makes. What doubles an effect for one of them does so for all before it.
 enum class Viewer {
-    wearer,  // of a headset: their own eye scatters, blurs and adapts to what the panel shows
-    reader,  // of a picture on a page or a monitor: the eye in the scene is nobody's own
+    wearer,    // of a headset: their own eye scatters, blurs and adapts to what the panel shows, and it is this eye that blinks
+    onlooker,  // at a display that shows somebody else's view: as the wearer, but for the lids
+    reader,    // of a picture on a page: the eye in the scene is nobody's own
 };
 
 // A usage error with one sentence for the first doubling that there is, which says what is doubled and what to choose instead.

@@ -15,7 +15,7 @@ std::string refusal(const char* preset, const std::vector<std::string>& models, 
 
 TEST(Doubling, PresetsHaveNone) {
     for (const Preset& preset : presets())
-        for (Viewer viewer : {Viewer::wearer, Viewer::reader}) EXPECT_EQ(refusal(std::string(preset.name).c_str(), {}, {}, viewer), "") << preset.name;
+        for (Viewer viewer : {Viewer::wearer, Viewer::onlooker, Viewer::reader}) EXPECT_EQ(refusal(std::string(preset.name).c_str(), {}, {}, viewer), "") << preset.name;
 }
 
 TEST(Doubling, WhatTheWearersEyeDoesIsRefusedForAWearerOnly) {
@@ -37,12 +37,19 @@ TEST(Doubling, WhatTheWearersEyeDoesIsRefusedForAWearerOnly) {
     for (const Case& c : cases) {
         EXPECT_NE(refusal("combined", c.models, c.settings, Viewer::wearer).find(c.says), std::string::npos)
             << c.says << ": " << refusal("combined", c.models, c.settings, Viewer::wearer);
+        EXPECT_NE(refusal("combined", c.models, c.settings, Viewer::onlooker), "") << c.says;
         EXPECT_EQ(refusal("combined", c.models, c.settings, Viewer::reader), "") << c.says;
         // A tone map that does not show the scene as it is makes no such promise.
         std::vector<std::string> other = c.models;
         other.push_back("tone=key_reinhard");
         EXPECT_EQ(refusal("combined", other, c.settings, Viewer::wearer), "") << c.says;
     }
+}
+
+TEST(Doubling, OnlyTheWearersOwnLidIsThere) {
+    EXPECT_NE(refusal("combined", {"eyelid=blink"}, {}, Viewer::wearer).find("eyelid=blink counts an effect twice: the wearer's own lid"), std::string::npos);
+    EXPECT_NE(refusal("luidolt2020", {"eyelid=blink"}, {}, Viewer::wearer), "");
+    EXPECT_EQ(refusal("combined", {"eyelid=blink"}, {}, Viewer::onlooker), "");
 }
 
 TEST(Doubling, ModelsThatAddTheDifferenceAreNotRefused) {
