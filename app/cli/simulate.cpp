@@ -19,6 +19,7 @@ namespace entoptic::app {
 namespace {
 
 using namespace perception;
+using drivers::GazeAngles;
 
 constexpr double frame_rate = 90;         // of the eye's states between the wanted times
 constexpr double default_age = 30;        // years, of the default eye
@@ -26,8 +27,8 @@ constexpr double full_field_deg2 = 8495;  // a disc of 104 degrees, what a heads
 constexpr double longest_time_s = 3600;
 
 struct Options {
-    std::string input, output, projection, gaze = "0,0", trace, pupil = "model", adapted_to = "scene", at, preset{default_preset}, observer,
-                                           report;
+    std::string input, output, projection, trace, adapted_to = "scene", at, preset{default_preset}, observer, report;
+    std::optional<std::string> gaze, pupil;
     std::vector<std::string> models, settings;
     std::optional<double> fov_deg;
     SceneOptions scene;
@@ -41,17 +42,21 @@ struct Plan {
     std::vector<InputFile> files;
     NumberedName output;
     std::optional<Projection> projection;
-    EyeInput eye;  // gaze, and the pupil unless it is modelled
+    GazeAngles gaze{0};  // where no trace says otherwise
     std::optional<double> pupil_mm, adapted_to;
     std::optional<Trace> trace;
+    double age = default_age;   // of the eye whose pupil is modelled
     std::vector<double> times;  // of a still picture, s
     Selection selection;
 };
 
-vec3 gaze_direction(double x_deg, double y_deg) {
-    constexpr double degree = 0.017453292519943295;
-    const double x = x_deg * degree, y = y_deg * degree;
-    return vec3(std::sin(x) * std::cos(y), std::sin(y), -std::cos(x) * std::cos(y));
+// A gaze beside a flat picture goes to its edge, as that of a headset's wearer goes to the edge of the view.
+GazeAngles inside(const EyeGeometry& g, GazeAngles gaze) {
+    if (g.kind != geometry_rectilinear) return gaze;
+    constexpr double degree = 1 / drivers::degrees_per_radian;
+    const double right = std::atan(static_cast<double>(g.tan_right)), x = std::clamp(gaze.x * degree, -right, right);
+    const double up = std::atan(static_cast<double>(g.tan_up) * std::cos(x));
+    return GazeAngles(x, std::clamp(gaze.y * degree, -up, up)) / degree;
 }
 
 bool writes(const NumberedName& name, const std::string& text, const char* extension) {
@@ -91,14 +96,17 @@ Result<void> plan_times(const Options& o, Plan& plan) {
 }
 
 Result<void> plan_eye(const Options& o, Plan& plan) {
-    const auto gaze = numbers_from(o.gaze);
-    if (!gaze || gaze->size() != 2 || std::abs((*gaze)[0]) > 180 || std::abs((*gaze)[1]) > 90)
-        return usage_error(fmt::format("--gaze {}: write X,Y in degrees from the centre, right and up positive.", o.gaze));
-    plan.eye.gaze_direction = gaze_direction((*gaze)[0], (*gaze)[1]);
-    if (o.pupil != "model") {
-        plan.pupil_mm = number_from(o.pupil);
+    if (o.gaze) {
+        const auto gaze = numbers_from(*o.gaze);
+        if (!gaze || gaze->size() != 2 || std::abs((*gaze)[0]) > 180 || std::abs((*gaze)[1]) > 90)
+            return usage_error(fmt::format(
+                "--gaze {}: write X,Y in degrees from the centre, right and up positive: X from -180 to 180, Y from -90 to 90.", *o.gaze));
+        plan.gaze = {(*gaze)[0], (*gaze)[1]};
+    }
+    if (o.pupil && *o.pupil != "model") {
+        plan.pupil_mm = number_from(*o.pupil);
         if (!plan.pupil_mm || *plan.pupil_mm < 1.5 || *plan.pupil_mm > 9)
-            return usage_error(fmt::format("--pupil {}: write a diameter from 1.5 to 9 mm, or 'model'.", o.pupil));
+            return usage_error(fmt::format("--pupil {}: write a diameter from 1.5 to 9 mm, or 'model'.", *o.pupil));
     }
     if (o.adapted_to != "scene") {
         plan.adapted_to = number_from(o.adapted_to);
@@ -107,22 +115,42 @@ Result<void> plan_eye(const Options& o, Plan& plan) {
     }
     if (o.trace.empty()) return {};
     ENTOPTIC_TRY(trace, Trace::read(o.trace));
+    if (o.gaze && trace.has_gaze()) return usage_error(fmt::format("--gaze does not go with '{}', which has a gaze of its own.", o.trace));
+    if (o.pupil && trace.has_pupil()) return usage_error(fmt::format("--pupil does not go with '{}', which has pupils of its own.", o.trace));
     plan.trace = std::move(trace);
     return {};
+}
+
+bool says_model_of(const Options& o, const std::string& slot) {
+    return std::any_of(o.models.begin(), o.models.end(), [&](const std::string& model) { return model.starts_with(slot + "="); });
 }
 
 // The eye that blinks in the trace is nobody's own here, so that its lid has to darken the picture, unless --model says otherwise.
 std::vector<std::string> models_with_lid(const Options& o, const std::optional<Trace>& trace) {
     std::vector<std::string> models = o.models;
-    const bool said = std::any_of(models.begin(), models.end(), [](const std::string& model) { return model.starts_with("eyelid="); });
-    if (trace && trace->has_blinks() && !said && o.preset != "off") models.emplace_back("eyelid=blink");
+    if (trace && trace->has_blinks() && !says_model_of(o, "eyelid") && o.preset != "off") models.emplace_back("eyelid=blink");
     return models;
 }
 
+// Pupils that are given or modelled here are those of the eye in the scene, so that a preset's model, which makes them of what a tracker
+// measured in front of a display, has nothing to do; only one that --model names has.
+Result<void> plan_pupil(const Options& o, Plan& plan) {
+    const Choice* choice = plan.selection.find("pupil");
+    if (!choice) return {};
+    if (says_model_of(o, "pupil")) {
+        if (plan.pupil_mm || (plan.trace && plan.trace->has_pupil())) return {};
+        return usage_error(fmt::format("--model pupil={} needs pupils as an eye tracker measured them: give --pupil MM, or --trace with pupil_mm.",
+                                       choice->entry->name));
+    }
+    for (std::size_t i = 0; i < choice->parameters.size(); ++i)
+        if (std::string_view(choice->entry->parameters[i].name) == "age") plan.age = static_cast<double>(choice->parameters[i]);
+    std::erase_if(plan.selection.choices, [](const Choice& c) { return c.entry->slot == "pupil"; });
+    return {};
+}
+
 Result<Selection> plan_selection(const Options& o, const std::optional<Trace>& trace) {
-    ENTOPTIC_TRY(selection, select_effects(o.preset, models_with_lid(o, trace), o.settings, o.observer, Viewer::reader));
-    // There is no wearer here: the pupil that is given is that of the eye in the scene.
-    std::erase_if(selection.choices, [](const Choice& choice) { return choice.entry->name == "residual_pupil"; });
+    const Viewer viewer = o.photographic ? Viewer::reader : Viewer::onlooker;
+    ENTOPTIC_TRY(selection, select_effects(o.preset, models_with_lid(o, trace), o.settings, o.observer, viewer));
     if (!o.photographic) return selection;
     bool known = false;
     for (Choice& choice : selection.choices)
@@ -145,6 +173,7 @@ Result<Plan> make_plan(const Options& o) {
     ENTOPTIC_CHECK(plan_eye(o, plan));
     ENTOPTIC_TRY(selection, plan_selection(o, plan.trace));
     plan.selection = std::move(selection);
+    ENTOPTIC_CHECK(plan_pupil(o, plan));
     ENTOPTIC_TRY(files, input_files(o.input));
     plan.files = std::move(files);
     ENTOPTIC_CHECK(plan_times(o, plan));
@@ -154,7 +183,9 @@ Result<Plan> make_plan(const Options& o) {
 
 class Simulation {
 public:
-    Simulation(const Options& options, Plan plan) : o_(options), plan_(std::move(plan)), progress_("frames", options.progress) {}
+    Simulation(const Options& options, Plan plan) : o_(options), plan_(std::move(plan)), progress_("frames", options.progress) {
+        if (plan_.trace) trace_eye_.emplace(*plan_.trace);
+    }
 
     Result<Json> run() {
         ENTOPTIC_CHECK(load(plan_.files[0]));
@@ -186,17 +217,18 @@ private:
         return {};
     }
     // The eye at `time_s`, looking at the picture that is loaded.
-    EyeInput eye_at(double time_s, double mean) const {
-        EyeInput eye = plan_.eye;
-        std::optional<double> pupil = plan_.pupil_mm;
-        if (plan_.trace) {
-            const TraceState state = plan_.trace->at(time_s);
-            eye.gaze_direction = gaze_direction(state.gaze_x_deg, state.gaze_y_deg);
-            eye.eyelid_open = static_cast<float>(state.eyelid_open);
-            if (state.pupil_mm) pupil = state.pupil_mm;
+    EyeInput eye_at(double time_s, double mean) {
+        EyeInput eye;
+        GazeAngles gaze = plan_.gaze;
+        double pupil = plan_.pupil_mm.value_or(pupil_diameter_mm(mean, plan_.age, std::min(full_field_deg2, field_deg2(geometry_)), 2));
+        if (trace_eye_) {
+            trace_eye_->advance(time_s, pupil);
+            gaze = inside(geometry_, trace_eye_->gaze(gaze));
+            pupil = trace_eye_->pupil_mm().value_or(pupil);
+            eye.eyelid_open = static_cast<float>(trace_eye_->eyelid_open());
         }
-        eye.pupil_diameter_mm =
-            static_cast<float>(pupil ? *pupil : pupil_diameter_mm(mean, default_age, std::min(full_field_deg2, field_deg2(geometry_)), 2));
+        eye.gaze_direction = vec3(drivers::direction_of(gaze));
+        eye.pupil_diameter_mm = static_cast<float>(pupil);
         return eye;
     }
     Result<void> frame(double time_s, double dt_s, double mean, bool want_picture) {
@@ -276,6 +308,13 @@ private:
                 {"adaptation_cd_m2", decimal(view.adaptation_cd_m2)},
                 {"effects", effects}};
     }
+    Json trace_json() const {
+        if (!plan_.trace) return nullptr;
+        return {{"file", o_.trace},
+                {"rows", plan_.trace->rows()},
+                {"rows_without_gaze", plan_.trace->rows_without_gaze()},
+                {"rows_without_pupil", plan_.trace->rows_without_pupil()}};
+    }
     Json report() const {
         static constexpr const char* kinds[] = {"lens", "rectilinear", "equirect"};
         Json errors = Json::array();
@@ -288,6 +327,7 @@ private:
                 {"size", {geometry_.width, geometry_.height}},
                 {"photometry", {{"scale", scene_.cd_per_unit}, {"source", scene_.scale_source}}},
                 {"display", {{"white_cd_m2", decimal(display_.white_cd_m2)}, {"black_cd_m2", decimal(display_.black_cd_m2)}}},
+                {"trace", trace_json()},
                 {"frames", frames_},
                 {"pictures", outputs_},
                 {"errors", errors}};
@@ -302,6 +342,7 @@ private:
     double first_mean_ = 0;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<Simulator> simulator_;
+    std::optional<TraceEye> trace_eye_;
     std::uint64_t frames_ = 0;
     Json outputs_ = Json::array();
 };
@@ -313,6 +354,9 @@ void tell(const Json& report) {
     if (cleaned > 0)
         fmt::print(stderr, "entoptic: {} pixels held NaN, an infinity, a negative or more than 1e8 cd/m² and were brought into range.\n",
                    cleaned);
+    if (const Json& trace = report["trace"]; trace.is_object() && trace["rows_without_gaze"].get<int>() + trace["rows_without_pupil"].get<int>() > 0)
+        fmt::print(stderr, "entoptic: of {} rows in '{}' {} have no gaze and {} no pupil that an eye can have: held, then relaxed, as when a tracker loses the eye.\n",
+                   trace["rows"].get<int>(), trace["file"].get<std::string>(), trace["rows_without_gaze"].get<int>(), trace["rows_without_pupil"].get<int>());
     for (const Json& error : report["errors"]) fmt::print(stderr, "entoptic: an effect is off: {}\n", error.get<std::string>());
 }
 
@@ -345,8 +389,8 @@ void add_simulate(CLI::App& app, Action& action) {
     c->add_option("--downscale", o->scene.downscale, "Average squares of K x K pixels first")->check(CLI::Range(1, 64));
     c->add_option("--fps", o->fps, "Frames a second of a numbered sequence")->check(CLI::Range(0.01, 10000.0));
     c->add_option("--gaze", o->gaze, "X,Y in degrees from the centre, right and up positive");
-    c->add_option("--trace", o->trace, "CSV file: time_s, gaze_x_deg, gaze_y_deg, pupil_mm, blink");
-    c->add_option("--pupil", o->pupil, "Pupil diameter in mm, or 'model' (from the scene's mean luminance)");
+    c->add_option("--trace", o->trace, "CSV file: time_s, gaze_x_deg, gaze_y_deg, pupil_mm, blink; filtered as an eye tracker's samples are");
+    c->add_option("--pupil", o->pupil, "Pupil diameter in mm, or 'model' (from the scene's mean luminance), of the eye in the scene");
     c->add_option("--adapted-to", o->adapted_to, "What the eye was adapted to before: cd/m², or 'scene'");
     c->add_option("--at", o->at, "Seconds after the scene appears, such as 0,0.5,10");
     c->add_option("--preset", o->preset, "Preset of effects (entoptic effects lists them)");

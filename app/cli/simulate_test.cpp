@@ -187,7 +187,8 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
     const auto outcome = entoptic({"simulate", picture("a.exr", lamp(48, 48, 1, 1e4f)), "-o", path("out_%t.exr"), "--fov", "60", "--trace",
                                    path("trace.csv"), "--at", "0,0.5,1", "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NEAR(outcome.json()["pictures"][1]["pupil_mm"].get<double>(), 4, 1e-5);
+    // 2 mm/s through a low-pass of 0.1 s: 3 + 2 (t - 0.1 (1 - exp(-t/0.1))).
+    EXPECT_NEAR(outcome.json()["pictures"][1]["pupil_mm"].get<double>(), 3.8013, 0.01);
     // A pupil between those of the tracker's white and black frame is one between 2 and 8 mm: (3 - 2.5)/(6 - 2.5) of the way.
     for (const char* way : {"--progress", "--reference"}) {
         const auto mapped = entoptic({"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--preset", "off",
@@ -195,11 +196,51 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
         ASSERT_EQ(mapped.status, 0) << mapped.err;
         EXPECT_NEAR(mapped.json()["pictures"][0]["pupil_mm"].get<double>(), 2 + 6 * 0.5 / 3.5, 1e-5) << way;
     }
-    write("bad.csv", "time_s,pupil_mm\n0,3\n1,17\n");
+    write("bad.csv", "time_s,pupil_mm\n0,3\n1,wide\n");
     expect_error(1, "bad.csv:3", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
+    write("bad.csv", "time_s,pupil_mm\n0,3000\n1,3100\n");
+    expect_error(1, "no row has a pupil_mm", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
+    expect_error(2, "--gaze", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--gaze", "1,1"});
+    expect_error(2, "--pupil", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--pupil", "3"});
+    expect_error(2, "--trace with pupil_mm", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--model", "pupil=residual_pupil"});
     write("worse.csv", "time_s,colour\n");
     expect_error(1, "'colour' is no column",
                  {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("worse.csv")});
+}
+
+// A pupil that is not found for half a second is held, then relaxes towards that of the scene; one that jumps is no faster than an eye's.
+TEST_F(Simulate, ATraceIsFilteredAsATrackersSamplesAre) {
+    const std::string scene = picture("a.exr", even(16, 16, 1e4f));   // of 2.1 mm
+    const auto pupils = [&](const std::string& trace, const std::string& times) {
+        write("trace.csv", trace);
+        const auto outcome = entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "100", "--trace", path("trace.csv"), "--at", times, "--json"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        std::vector<double> mm;
+        const auto document = outcome.json();
+        for (const auto& p : document["pictures"]) mm.push_back(p["pupil_mm"].get<double>());
+        return std::pair{mm, outcome.err};
+    };
+    std::string lost = "\xEF\xBB\xBFtime_s,pupil_mm,gaze_x_deg\r\n", volatile_pupil = "time_s,pupil_mm\n";
+    for (int i = 0; i < 100; ++i) lost += std::to_string(i * 0.02) + (i < 26 ? ",6,0\r\n" : i % 2 ? ",0,nan\r\n" : ",,n/a\r\n");
+    for (int i = 0; i < 80; ++i) volatile_pupil += std::to_string(i * 0.025) + (i % 2 ? ",2\n" : ",8\n");
+    const auto [held, said] = pupils(lost, "0.5,0.9,1.6,1.9");
+    EXPECT_NEAR(held[0], 6, 1e-4);
+    EXPECT_NEAR(held[1], 6, 1e-4);   // found last at 0.5 s
+    EXPECT_LT(held[2], 5.5);
+    EXPECT_LT(held[3], held[2]);
+    EXPECT_GT(held[3], 2.1);
+    EXPECT_NE(said.find("74 have no gaze and 74 no pupil"), std::string::npos) << said;
+    const auto [steady, nothing] = pupils(volatile_pupil, "1.5,1.525,1.55,1.575,1.6");
+    EXPECT_EQ(nothing, "");
+    for (std::size_t i = 1; i < steady.size(); ++i) EXPECT_LT(std::abs(steady[i] - steady[i - 1]), 0.15) << i;
+}
+
+TEST_F(Simulate, AGazeOfThePanoramaGoesAllAround) {
+    write("trace.csv", "time_s,gaze_x_deg,gaze_y_deg\n0,170,20\n");
+    const std::string scene = picture("pano.exr", lamp(64, 32, 1, 1e5f));
+    ASSERT_EQ(entoptic({"simulate", scene, "-o", path("trace.exr"), "--trace", path("trace.csv"), "--preset", "luidolt2020"}).status, 0);
+    ASSERT_EQ(entoptic({"simulate", scene, "-o", path("gaze.exr"), "--gaze", "170,20", "--preset", "luidolt2020"}).status, 0);
+    EXPECT_EQ(result("trace.exr").data, result("gaze.exr").data);
 }
 
 TEST_F(Simulate, ABlinkInTheTraceDarkensThePicture) {
@@ -323,6 +364,10 @@ TEST_F(Simulate, WrongOptionsAreUsageErrors) {
     expect_error(2, "luidolt2020", call({"--fov", "60", "--preset", "nonsense"}));
     expect_error(2, "glare", call({"--fov", "60", "--model", "glare=nonsense"}));
     expect_error(2, "nonsense", call({"--fov", "60", "--observer", "nonsense"}));
+    expect_error(2, "There is no slot 'nosuch'", call({"--fov", "60", "--set", "nosuch.age=80"}));
+    expect_error(2, "glare=fraunhofer_mask", call({"--fov", "60", "--set", "glare.mask=x.png"}));
+    expect_error(2, "counts an effect twice", call({"--fov", "60", "--model", "mesopic=luidolt_tint"}));
+    expect_error(2, "-180 to 180", call({"--fov", "60", "--gaze", "500,0"}));
     expect_error(2, ".png", {"simulate", square, "-o", path("out.jpg"), "--fov", "60"});
     expect_error(2, "--projection", call({"--projection", "fisheye"}));
     expect_error(2, "equirect", call({"--projection", "equirect", "--fov", "60"}));
@@ -331,14 +376,21 @@ TEST_F(Simulate, WrongOptionsAreUsageErrors) {
 }
 
 TEST_F(Simulate, AnObserverChangesWhatIsChosenAndNoMore) {
-    write("config/entoptic/observers/tester.toml", "description = \"brighter\"\n[settings]\ntone.key_scale = 2\nnoslot.age = 80\n");
+    write("config/entoptic/observers/tester.toml", "description = \"brighter\"\n[settings]\ntone.key_scale = 2\nglare.age = 80\n");
     const std::string scene = picture("a.exr", even(16, 16, 10));
     ASSERT_EQ(entoptic({"simulate", scene, "-o", path("plain.exr"), "--fov", "60", "--preset", "luidolt2020"}).status, 0);
     const auto outcome = entoptic({"simulate", scene, "-o", path("observer.exr"), "--fov", "60", "--preset", "luidolt2020", "--observer", "tester"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_GT(mean(result("observer.exr")), 1.1f * mean(result("plain.exr")));
-    write("config/entoptic/observers/broken.toml", "[settings]\ntone.key_scale = \"much\"\n");
-    expect_error(2, "broken.toml:2", {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken"});
+    for (const auto& [line, said] : std::map<std::string, std::string>{{"tone.key_scale = \"much\"", "must be a number: 0.05 to 20."},
+                                                                       {"glare.age = \"70 years\"", "must be a number: 10 to 90 years."},
+                                                                       {"glare.agee = 70", "has a parameter 'agee'"},
+                                                                       {"glaree.age = 70", "no slot 'glaree'"},
+                                                                       {"glare.age = 840", "glare.age = 840 is out of range: 10 to 90 years."}}) {
+        write("config/entoptic/observers/broken.toml", "[settings]\n" + line + "\n");
+        expect_error(2, "broken.toml:2: ", {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken", "--preset", "luidolt2020"});
+        expect_error(2, said, {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken", "--preset", "luidolt2020"});
+    }
 }
 
 TEST_F(Simulate, ObserversThatComeWithTheProgramAreTheirAge) {
@@ -355,8 +407,29 @@ TEST_F(Simulate, ObserversThatComeWithTheProgramAreTheirAge) {
     }
     EXPECT_GT(veil["70-years"], 1.5f * veil["young"]);
     EXPECT_GT(veil["early-cataract"], veil["70-years"]);
+    // A picture within the display's range is seen differently, too: who looks at it is the mean eye of 30 years. An eye like that one, or none
+    // that the file tells of, leaves it as it is.
+    ImageF page = even(64, 64, 100);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 32; ++x)
+            for (int c = 0; c < 3; ++c) page.at(x, y, c) = 1;
+    picture("page.exr", page);
+    write("config/entoptic/observers/thirty.toml", "[settings]\nglare.age = 30\n");
+    write("config/entoptic/observers/own.toml", "[settings]\nglare.age = 70\nglare.wearer_age = 0\n");
+    const auto seen = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"simulate", path("page.exr"), "-o", path("page_seen.exr"), "--fov", "30"});
+        EXPECT_EQ(entoptic(more).status, 0);
+        return result("page_seen.exr");
+    };
+    const ImageF off = seen({"--preset", "off"});
+    EXPECT_EQ(seen({}).data, off.data);
+    EXPECT_EQ(seen({"--observer", "thirty"}).data, off.data);
+    EXPECT_EQ(seen({"--observer", "own"}).data, off.data);
+    for (const char* name : {"70-years", "early-cataract", "night-driver"})
+        EXPECT_GT(seen({"--observer", name}).at(20, 32, 1), 1.02f * off.at(20, 32, 1)) << name;
+    EXPECT_LE(seen({"--observer", "young"}).at(20, 32, 1), off.at(20, 32, 1));
     write("config/entoptic/observers/old.toml", "[settings]\nglare.age = 900\n");
-    expect_error(2, "glare.age = 900 is out of range: 10 to 90 years", {"simulate", scene, "-o", path("out.exr"), "--fov", "30", "--observer", "old"});
+    expect_error(2, "old.toml:2: glare.age = 900 is out of range: 10 to 90 years", {"simulate", scene, "-o", path("out.exr"), "--fov", "30", "--observer", "old"});
 }
 
 }  // namespace
