@@ -6,7 +6,7 @@ std::span<const Trade> trades() {
     static const std::vector<Trade> table{
         {"glare", "", "wavelengths", {32, 16, 8, 4, 3}, "wavelengths"},
         {"glare", "", "texel_px", {1, 2, 4, 8}, "resolution"},
-        {"glare", "fraunhofer_mask", "near_px", {12, 8, 4, 0}, "kernel size"},
+        {"glare", "fraunhofer_mask", "near_px", {24, 16, 12, 8, 4, 0}, "kernel size"},
         {"glare", "", "near_px", {8, 4, 2, 0}, "kernel size"},
         {"glare", "luidolt_spectral", "near_from", {0, 4, 16, 64}, "window"},
         {"glare", "luidolt_spectral", "patches", {0, 16, 64, 256}, "texture"},

@@ -75,6 +75,12 @@ double in_wedge(const ImageF& out, const ImageF& in, int cx, int cy, double azim
     return sum;
 }
 
+const std::vector<std::string> hexagon = {"glare.blades=6", "glare.lids=0", "glare.lashes=0"};
+std::vector<std::string> with(std::vector<std::string> list, const std::vector<std::string>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+    return list;
+}
+
 struct Scene {
     const char* what;
     ImageF image;
@@ -121,6 +127,43 @@ TEST(FraunhoferMask, GpuAndReferenceAgree) {
     }
 }
 
+// A dark room, darker to the right, with a lamp of 2 x 2 pixels, at the headset's 13.85 pixels a degree.
+ImageF dark_room(int width, int height) {
+    ImageF room(width, height, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) fill(room, x, y, 1, 1, static_cast<float>(0.3 * std::pow(10.0, -2.0 * x / width)));
+    fill(room, 20, 16, 2, 2, 500);
+    return room;
+}
+
+TEST(FraunhoferMask, DifferencesFromTheReferenceCannotBeSeen) {
+    constexpr int width = 36, height = 40;
+    const EyeGeometry g = rectilinear(width, height, 2 * std::atan(0.5 * width / 13.85 / 57.29577951308232) * 57.29577951308232);
+    const std::vector<std::string> fine{"glare.texel_px=1", "glare.near_px=24"};
+    const struct {
+        const char* what;
+        std::vector<std::string> settings;
+        float open;
+    } eyes[] = {{"open eye", {}, 1}, {"half-closed eye fine", fine, 0.5625f}, {"hexagon fine", with({"glare.blades=6"}, fine), 1}};
+    const ImageF room = dark_room(width, height);
+    for (const auto& eye : eyes) {
+        ImageF gpu = Glare(g, model(eye.settings)).at(room, 5, eye.open);
+        ImageD exact = reference(room, g, eye.settings, 5, eye.open);
+        double most_added = 0;
+        for (std::size_t i = 0; i < gpu.data.size(); ++i) {
+            if (room.data[i] < white) most_added = std::max(most_added, exact.data[i] - static_cast<double>(room.data[i]));
+            gpu.data[i] = std::clamp(gpu.data[i], 0.04f, white);
+            exact.data[i] = std::clamp(exact.data[i], 0.04, static_cast<double>(white));
+        }
+        EXPECT_GT(most_added, 1) << eye.what << ": too little glare to be seen at all";
+        const ErrorSummary e = summary(delta_e_itp(gpu, exact));
+        ledger(name, eye.what, "displayed p99 dE_ITP", e.p99);
+        ledger(name, eye.what, "displayed mean dE_ITP", e.mean);
+        EXPECT_LT(e.p99, 1) << eye.what;
+        EXPECT_LT(e.mean, 0.2) << eye.what;
+    }
+}
+
 ImageF lamps(int size, int count, std::uint32_t seed = 3) {
     ImageF image = uniform(size, size, 1);
     std::mt19937 random(seed);
@@ -130,12 +173,6 @@ ImageF lamps(int size, int count, std::uint32_t seed = 3) {
     }
     return image;
 }
-const std::vector<std::string> hexagon = {"glare.blades=6", "glare.lids=0", "glare.lashes=0"};
-std::vector<std::string> with(std::vector<std::string> list, const std::vector<std::string>& more) {
-    list.insert(list.end(), more.begin(), more.end());
-    return list;
-}
-
 TEST(FraunhoferMask, BillboardsAndTransformsDrawTheSame) {
     const EyeGeometry g = rectilinear(80, 80, 50);
     for (const int count : {1, 5, 12}) {

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Which tiles need the near field: those with light above the threshold in them or beside them. A near radius of at most 12 pixels reaches
-// one tile to the side and two up or down. The order of the list varies from run to run; the picture does not depend on it.
+// Which tiles need the near field: those with light above the threshold in them or beside them. A near radius of at most 24 pixels reaches
+// one tile to the side and three up or down. The order of the list varies from run to run; the picture does not depend on it.
 #include "perception/glare/glare_gpu.h"
 #include "perception/observer_state.h"
 #include "shaders/scene_statistics.h"
@@ -24,7 +24,7 @@ void main() {
     const uint view = tile / per_view;
     const int x = int(tile % per_view % push.tiles_x), y = int(tile % per_view / push.tiles_x);
     float brightest = 0.0;
-    for (int dy = -2; dy <= 2; ++dy)
+    for (int dy = -3; dy <= 3; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
             const ivec2 at = ivec2(x + dx, y + dy);
             if (at.x < 0 || at.y < 0 || at.x >= int(push.tiles_x) || at.y >= int(push.tiles_y)) continue;
