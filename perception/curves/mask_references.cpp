@@ -94,7 +94,7 @@ private:
 std::vector<double> fraunhofer_mask_scatter(const CurveInput& in, std::span<const double> degrees) {
     const auto p = in.as<FraunhoferMaskParams>();
     const double plane = mask_plane_over_pupil * in.own[0];
-    const ApertureRaster aperture = raster_aperture(p, nullptr, {in.own[0], static_cast<double>(p.lid_open), 0}, mask_samples / 2, plane);
+    const ApertureRaster aperture = raster_aperture(p, nullptr, {in.own[0], static_cast<double>(p.lid_open), 0}, mask_samples / 4, plane);
     const RingMean light(aperture, in.own[0]);
     const DiffractedSpectrum spectrum = in.own[1] > 0 ? DiffractedSpectrum{{in.own[1] / 1000}, {glm::dvec3(1)}} : diffracted_spectrum(p);
     std::vector<double> values;
