@@ -397,7 +397,7 @@ Result<void> write_png(const std::string& path, const Image8& image) {
 Result<Image8> read_png(const std::string& path) {
     PngImage png;
     if (!png_image_begin_read_from_file(&png.image, path.c_str()))
-        return forward_error(broken(path, fmt::format("{}.", png.image.message)));
+        return forward_error(broken(path, fmt::format("it is no PNG, or empty or cut short (libpng: {}).", png.image.message)));
     const std::int64_t pixels = std::int64_t(png.image.width) * std::int64_t(png.image.height);
     if (pixels > max_image_pixels)
         return forward_error(broken(path, fmt::format("it has {} x {} pixels; at most {} million are accepted.", png.image.width,
@@ -406,7 +406,7 @@ Result<Image8> read_png(const std::string& path) {
     png.image.format = alpha ? PNG_FORMAT_RGBA : colour ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY;
     Image8 image(int(png.image.width), int(png.image.height), alpha ? 4 : colour ? 3 : 1);
     if (!png_image_finish_read(&png.image, nullptr, image.data.data(), 0, nullptr))
-        return forward_error(broken(path, fmt::format("{}.", png.image.message)));
+        return forward_error(broken(path, fmt::format("it is no PNG, or empty or cut short (libpng: {}).", png.image.message)));
     return image;
 }
 

@@ -171,6 +171,7 @@ void draw_picture(const ImageD& picture, double width_mm, double shift_mm, const
 }  // namespace
 
 Result<std::shared_ptr<const MaskPicture>> read_mask_picture(const std::string& path) {
+    constexpr double tolerance = 1e-3;  // choice: what resampling leaves beyond the range
     auto picture = std::make_shared<MaskPicture>();
     const auto lower_ending = [&](std::size_t n) {
         std::string end = path.size() >= n ? path.substr(path.size() - n) : "";
@@ -183,7 +184,10 @@ Result<std::shared_ptr<const MaskPicture>> read_mask_picture(const std::string& 
         for (std::size_t i = 0; i < picture->transmission.data.size(); ++i) {
             const float* c = &exr.rgb.data[3 * i];
             const double y = 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) + 0.0722 * static_cast<double>(c[2]);
-            picture->transmission.data[i] = y > 0 ? std::min(y, 1.0) : 0.0;  // NaN: 0
+            if (!(y >= -tolerance && y <= 1 + tolerance))
+                return usage_error(fmt::format("'{}': the pixel {}, {} is {}; a mask's values are transmissions of amplitude, 0 (opaque) to 1 (clear).", path,
+                                               i % static_cast<std::size_t>(exr.rgb.width), i / static_cast<std::size_t>(exr.rgb.width), y));
+            picture->transmission.data[i] = std::clamp(y, 0.0, 1.0);
         }
     } else if (lower_ending(4) == ".png") {
         ENTOPTIC_TRY(png, read_png(path));
@@ -197,6 +201,8 @@ Result<std::shared_ptr<const MaskPicture>> read_mask_picture(const std::string& 
     } else {
         return usage_error(fmt::format("'{}' is no picture of an aperture: a .png or .exr file is needed.", path));
     }
+    if (std::all_of(picture->transmission.data.begin(), picture->transmission.data.end(), [](double t) { return t <= 0; }))
+        return usage_error(fmt::format("'{}' lets no light through: it is black, or transparent, everywhere. White is clear, black opaque.", path));
     if (picture->transmission.width > 16384 || picture->transmission.height > 16384)
         return usage_error(fmt::format("'{}' is {}x{} pixels: an aperture may have 1 to 16384 a side.", path, picture->transmission.width,
                                        picture->transmission.height));

@@ -393,6 +393,13 @@ TEST(FraunhoferMask, AnyPictureIsAMask) {
         EXPECT_NE(error("glare.mask=" + wrong).find("glare.mask"), std::string::npos);
         EXPECT_NE(error("glare.mask=" + wrong).find(wrong), std::string::npos);
     }
+    const std::string black = folder / "black.png", amplifier = folder / "amplifier.exr", broken = folder / "nan.exr";
+    check(write_png(black, Image8(8, 8, 1)));
+    check(write_exr(amplifier, ImageF(8, 8, 3, 1.5f), {}));
+    check(write_exr(broken, ImageF(8, 8, 3, std::numeric_limits<float>::quiet_NaN()), {}));
+    EXPECT_NE(error("glare.mask=" + black).find("no light"), std::string::npos);
+    EXPECT_NE(error("glare.mask=" + amplifier).find("0 (opaque) to 1 (clear)"), std::string::npos);
+    EXPECT_NE(error("glare.mask=" + broken).find("0 (opaque) to 1 (clear)"), std::string::npos);
     EXPECT_NE(error("glare.nothing=1").find("mask"), std::string::npos) << "the list of parameters names the file";
     EXPECT_EQ(error("glare.mask="), "");
     Selection other = model(settings);
