@@ -134,12 +134,23 @@ CurvePicture picture_of(const CurveRequest& request, const Rows& rows, bool log_
             fmt::format("{}, {}", kind.y_name, kind.y_unit), log_x, request.columns(), rows};
 }
 
+Result<void> expect_numbers(const CurveRequest& request, const Rows& rows) {
+    const auto columns = request.columns();
+    for (const auto& row : rows)
+        for (std::size_t i = 1; i < row.size(); ++i)
+            if (!std::isfinite(row[i]))
+                return failure(fmt::format("{} of {} has no value at {:g} ({}): these settings leave nothing to measure, such as an eye that lets no light in.",
+                                           request.curve().kind->name, request.curve().model, row[0], columns[i]));
+    return {};
+}
+
 Result<int> curve(const Options& o) {
     ENTOPTIC_TRY(request, request_from(o));
     ENTOPTIC_TRY(x, abscissas_from(o.x));
     ENTOPTIC_CHECK(request.check(x.xs));
     ENTOPTIC_TRY(device, gpu::Device::create({}));
     ENTOPTIC_TRY(rows, request.rows(*device, x.xs));
+    ENTOPTIC_CHECK(expect_numbers(request, rows));
     if (!o.plot.empty()) ENTOPTIC_CHECK(write_curve_plot(o.plot, picture_of(request, rows, x.logarithmic)));
     if (o.json) print_json(curve_json(request, rows));
     else if (o.plot.empty()) print_table(request, rows);

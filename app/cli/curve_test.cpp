@@ -81,6 +81,9 @@ TEST_F(Curve, PlotIsAPicture) {
 }
 
 TEST_F(Curve, ErrorsNameWhatThereIs) {
+    expect_error(1, "no value at 1", {"curve", "glare.psf", "--x", "1", "--set", "model=fraunhofer_mask", "--set", "lid_open=0"});
+    expect_error(1, "closed_form", {"curve", "glare.psf", "--x", "1", "--set", "model=none"});
+    expect_error(1, "closed_form", {"curve", "glare.psf", "--x", "1", "--set", "model=larson_increment"});
     expect_error(2, "adaptation.step", {"curve", "adaptation", "--x", "1"});
     expect_error(2, "--x", {"curve", "adaptation.step"});
     expect_error(2, "FROM:TO:N", {"curve", "adaptation.step", "--x", "1:2"});

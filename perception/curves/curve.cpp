@@ -79,7 +79,9 @@ Result<const Curve*> find_curve(std::string_view name, std::string_view model) {
     if (!first) return usage_error(fmt::format("There is no curve '{}'. Curves: {}.", name, fmt::join(names, ", ")));
     if (model.empty()) return combined ? combined : first;
     if (wanted) return wanted;
-    if (find_model(first->kind->slot, model)) return failure(fmt::format("The model '{}' has no {}. Models that have it: {}.", model, name, fmt::join(with, ", ")));
+    const auto all = models();
+    if (model == "none" || std::any_of(all.begin(), all.end(), [&](const ModelEntry* entry) { return entry->name == model; }))
+        return failure(fmt::format("The model '{}' has no {}. Models that have it: {}.", model, name, fmt::join(with, ", ")));
     return usage_error(fmt::format("There is no model '{}' of {}. Models: {}.", model, name, fmt::join(with, ", ")));
 }
 
