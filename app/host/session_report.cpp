@@ -1,5 +1,6 @@
 #include "app/host/session_report.h"
 
+#include "app/choice_json.h"
 #include "app/cli/output.h"
 
 #include <algorithm>
@@ -79,10 +80,15 @@ Json state_json(const compositor::RunReport& report) {
 
 Json effects_now_json(const SessionFacts& facts, const compositor::FrameOutcome& last) {
     Json effects = Json::array();
+    // The last frame may be older than the choice.
+    const auto chosen = [&](const perception::EffectOutcome& e) {
+        const perception::Choice* choice = facts.selection.find(e.slot);
+        return choice ? choice->entry->name == e.model : e.slot == "foveation";
+    };
     for (const perception::EffectOutcome& e : last.effects)
-        effects.push_back({{"slot", e.slot}, {"model", e.model}, {"on", e.recorded && !e.gated}, {"why", e.why}});
+        if (chosen(e)) effects.push_back({{"slot", e.slot}, {"model", e.model}, {"on", e.recorded && !e.gated}, {"why", e.why}});
     const auto told = [&](std::string_view slot) {
-        return std::any_of(last.effects.begin(), last.effects.end(), [&](const perception::EffectOutcome& e) { return e.slot == slot; });
+        return std::any_of(last.effects.begin(), last.effects.end(), [&](const perception::EffectOutcome& e) { return e.slot == slot && chosen(e); });
     };
     for (const perception::Choice& choice : facts.selection.choices)
         if (!told(choice.entry->slot))
@@ -122,6 +128,11 @@ Json report_json(const SessionFacts& facts, const compositor::RunReport& report,
             {"target", report.target},
             {"clock", report.lockstep ? "lockstep" : "real"},
             {"preset", facts.selection.preset},
+            {"observer", facts.config.observer.value},
+            {"models", facts.config.model_names()},
+            {"settings", facts.config.setting_texts()},
+            {"chosen", choice_json(facts.selection)},
+            {"script", facts.config.script.value},
             {"seed", facts.config.seed.value},
             {"application", application_json(facts.application)},
             {"frames", frames_json(report)},
