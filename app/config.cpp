@@ -100,8 +100,9 @@ bool read_settings(const toml::node& node, const Source& source, Config& c) {
             const auto word = is_word ? value.value_exact<std::string>() : std::nullopt;
             const auto number = value.is_number() ? value.value<double>() : std::nullopt;
             if (!word && (!number || !std::isfinite(*number))) return false;
-            c.settings.push_back(
-                {fmt::format("{}.{}={}", slot.str(), name.str(), word ? *word : fmt::format("{}", *number)), source.origin(value)});
+            const bool is_path = word && slot != "foveation" && !word->empty();
+            const std::string text = !word ? fmt::format("{}", *number) : is_path ? (fs::absolute(source.path).parent_path() / *word).string() : *word;
+            c.settings.push_back({fmt::format("{}.{}={}", slot.str(), name.str(), text), source.origin(value)});
         }
     }
     return true;
@@ -373,6 +374,18 @@ Result<Config> load_config(const std::optional<ApplicationNames>& application) {
     ENTOPTIC_CHECK(read_table(table, {file, true}, config, {"launcher"}));
     config.launcher_directory = {table["launcher"]["directory"].value_or(std::string()), "command line"};
     return config;
+}
+
+Error with_origin(Error error, const Config& config) {
+    for (const auto* list : {&config.settings, &config.models})
+        for (const Setting<std::string>& item : *list) {
+            const std::string name = item.value.substr(0, item.value.find('='));
+            const bool is_model = list == &config.models;
+            if (item.origin == "command line" || item.origin == "default" || error.message.find(is_model ? item.value : name) == std::string::npos) continue;
+            error.message = fmt::format("{}: {}", item.origin, error.message);
+            return error;
+        }
+    return error;
 }
 
 std::string toml_string(const std::string& text) {

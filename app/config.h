@@ -90,6 +90,9 @@ struct Overlay {
 };
 Result<void> write_overlay(const std::string& path, const Overlay& overlay);
 
+// An error about a model or setting that a file of the configuration chose, with that file and line before it.
+Error with_origin(Error error, const Config& config);
+
 // Text as a TOML string, quoted.
 std::string toml_string(const std::string& text);
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <optional>
 
 namespace entoptic::perception {
 namespace {
@@ -102,6 +103,28 @@ Result<void> set_foveation(FoveationSettings& foveation, std::string_view name, 
     return {};
 }
 
+// Two parameters of which the first cannot be above the second.
+struct Ordered {
+    std::string_view slot, low, high;
+};
+constexpr Ordered ordered[] = {{"pupil", "least_mm", "most_mm"}, {"pupil", "white_mm", "black_mm"}, {"scotoma", "inner_deg", "outer_deg"}};
+
+std::optional<float> value_of(const Choice& choice, std::string_view name) {
+    for (std::size_t i = 0; i < choice.entry->parameters.size(); ++i)
+        if (name == choice.entry->parameters[i].name) return choice.parameters[i];
+    return std::nullopt;
+}
+
+Result<void> expect_order(const Selection& selection) {
+    for (const Ordered& pair : ordered) {
+        const Choice* choice = selection.find(pair.slot);
+        const auto low = choice ? value_of(*choice, pair.low) : std::nullopt, high = choice ? value_of(*choice, pair.high) : std::nullopt;
+        if (low && high && *low > *high)
+            return usage_error(fmt::format("{0}.{1} = {2} must not be above {0}.{3} = {4}.", pair.slot, pair.low, *low, pair.high, *high));
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string range_text(const ParameterInfo& p) {
@@ -152,6 +175,7 @@ Result<Selection> select(std::string_view preset, const std::vector<std::string>
     Selection selection{std::string(preset), {}, foveation};
     for (const ModelEntry* entry : models())
         if (const auto found = chosen.find(entry->slot); found != chosen.end() && found->second.entry == entry) selection.choices.push_back(found->second);
+    ENTOPTIC_CHECK(expect_order(selection));
     return selection;
 }
 

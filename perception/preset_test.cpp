@@ -69,6 +69,17 @@ TEST(Ranges, IncludeTheirEnds) {
     EXPECT_FALSE(select("off", {"noise=rod_noise"}, {"noise.grain_deg=0.0999"}));
 }
 
+TEST(Ranges, TheLesserIsNotAboveTheGreater) {
+    const auto said = [](const char* model, const char* setting) {
+        const auto selection = select("off", {model}, {setting});
+        return selection ? "" : selection.error().message;
+    };
+    EXPECT_EQ(said("pupil=residual_pupil", "pupil.least_mm=8.5"), "pupil.least_mm = 8.5 must not be above pupil.most_mm = 8.");
+    EXPECT_NE(said("pupil=luidolt_pupil", "pupil.white_mm=7"), "");
+    EXPECT_NE(said("scotoma=foveal_scotoma", "scotoma.inner_deg=9"), "");
+    EXPECT_EQ(said("pupil=residual_pupil", "pupil.least_mm=8"), "");
+}
+
 TEST(Doubling, TwoToneCurvesAreRefusedForEverybody) {
     for (Viewer viewer : {Viewer::wearer, Viewer::reader}) {
         EXPECT_NE(refusal("kakimoto2004", {"tone=naka_rushton"}, {}, viewer).find("two tone curves"), std::string::npos);

@@ -1,10 +1,13 @@
 #include "app/cli/command.h"
 
 #include "base/log.h"
+#include "perception/model.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
+#include <set>
 
 namespace entoptic::app {
 namespace {
@@ -50,6 +53,26 @@ int parse_and_run(CLI::App& app, std::vector<std::string> arguments, const Actio
 
 CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help) {
     return command.add_option(name, values, help)->allow_extra_args(false);
+}
+
+void tell_twice(const std::vector<std::string>& texts, const char* option) {
+    std::set<std::string> seen, told;
+    for (const std::string& text : texts) {
+        const std::string name = text.substr(0, text.find('='));
+        if (!seen.insert(name).second && told.insert(name).second)
+            fmt::print(stderr, "entoptic: {} {} is given more than once; the last one counts.\n", option, name);
+    }
+}
+
+std::vector<std::string> with_whole_paths(std::vector<std::string> settings) {
+    for (std::string& text : settings) {
+        const auto dot = text.find('.'), equals = text.find('=');
+        if (dot == std::string::npos || equals == std::string::npos || dot > equals || equals + 1 == text.size()) continue;
+        const std::string_view whole(text);
+        if (!perception::names_file(whole.substr(0, dot), whole.substr(dot + 1, equals - dot - 1))) continue;
+        text = text.substr(0, equals + 1) + std::filesystem::absolute(text.substr(equals + 1)).string();
+    }
+    return settings;
 }
 
 int run_command_line(std::vector<std::string> arguments) {

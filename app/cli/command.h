@@ -35,6 +35,11 @@ void add_export(CLI::App& app, Action& action);
 // An option that may be given again and again, one value each time: `--model a=b --model c=d`.
 CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help);
 
+// Says on standard error which of `texts` ("slot=model", "slot.parameter=value") name the same thing again: the last counts.
+void tell_twice(const std::vector<std::string>& texts, const char* option);
+// The settings with files' paths from the root, for a process that works in another folder.
+std::vector<std::string> with_whole_paths(std::vector<std::string> settings);
+
 // Runs the action that `arguments` (without the program's name) ask for; everything wrong is said on standard error.
 // Exit codes: 0 done, 1 failed, 2 wrong usage, 3 the machine lacks something.
 int run_command_line(std::vector<std::string> arguments);

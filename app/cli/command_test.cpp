@@ -130,6 +130,12 @@ TEST_F(Command, RunChecksItsOptionsFirst) {
     expect_error(2, "eye-scale", call({"--eye-scale", "9"}));
     expect_error(2, "lockstep", call({"--clock", "sundial"}));
     expect_error(2, "luidolt2020", call({"--preset", "nonsense"}));
+    write("config/entoptic/config.toml", "frames = 3\n[settings]\nglare.age = 840\n");
+    expect_error(2, "config.toml:3: glare.age = 840 is out of range: 10 to 90 years.", call({}));
+    write("config/entoptic/config.toml", "[settings]\nfoveation.inverse = \"sideways\"\n");
+    expect_error(2, "off, exact or fitted", call({}));
+    write("config/entoptic/config.toml", "");
+    expect_error(2, "own lid", call({"--model", "eyelid=blink"}));
     expect_error(2, "SLOT=NAME", call({"--model", "glare"}));
     expect_error(2, "tone.knee", call({"--set", "tone.knee=lots"}));
     expect_error(2, "--dump", call({"--dump-every", "3"}));

@@ -159,8 +159,8 @@ Result<void> check_against_config(const Options& o) {
     }
     models.insert(models.end(), o.models.begin(), o.models.end());
     settings.insert(settings.end(), o.settings.begin(), o.settings.end());
-    ENTOPTIC_CHECK(select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value),
-                                  perception::Viewer::wearer));
+    const auto chosen = select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value), perception::Viewer::wearer);
+    if (!chosen) return forward_error(o.preset ? chosen.error() : with_origin(chosen.error(), base));
     return {};
 }
 
@@ -273,7 +273,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& application, Action&
     c->add_option("--clock", o->clock, "real, or lockstep: each frame composed exactly once on a virtual clock")
         ->check(CLI::IsMember({"real", "lockstep"}));
     c->add_option("--script", o->script, "What head, eyes and hands do: a built-in script or a file");
-    c->add_option("--frames", o->frames, "End the session after so many displayed frames")
+    c->add_option("--frames", o->frames, "End the session after so many displayed frames; one that is under way then is still shown")
         ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 40));
     c->add_option("--dump", o->dump, "Folder for pictures of every frame");
     c->add_option("--dump-stages", o->dump_stages, "Which: warp,perceive,lens,panel,seen")->delimiter(',')->allow_extra_args(false);
@@ -293,6 +293,9 @@ void add_run(CLI::App& app, const std::vector<std::string>& application, Action&
     c->callback([o, &application, &action] {
         action = [o, &application] {
             o->application = application;
+            o->settings = with_whole_paths(std::move(o->settings));
+            tell_twice(o->models, "--model");
+            tell_twice(o->settings, "--set");
             return run(*o);
         };
     });

@@ -83,7 +83,7 @@ void add_set(CLI::App& app, Action& action) {
     auto o = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("set", "Change preset, models and parameters, or re-centre the gaze, while a runtime runs");
     command->add_option("settings", o->choice.settings, "SLOT.PARAMETER=VALUE; all of them take effect, or none");
-    command->add_option("--model", o->choice.models, "SLOT=NAME, another model, or none; what the others have in memory stays");
+    add_repeated(*command, "--model", o->choice.models, "SLOT=NAME, another model, or none; what the others have in memory stays");
     command->add_option("--preset", o->choice.preset, "Another preset, instead of all that was chosen before");
     command->add_option("--pid", o->pid, "Process of the runtime, when several run (entoptic status)")->check(CLI::PositiveNumber);
     command->add_flag("--reset", o->reset, "Go back to what the runtime was started with first");
@@ -91,7 +91,12 @@ void add_set(CLI::App& app, Action& action) {
                                               "The eye tracker has slipped: the wearer looks straight ahead now (some two metres away)");
     command->add_flag("--save", o->save, "With --recentre-gaze: keep it in the observer's file")->needs(recentre);
     command->add_flag("--json", o->json, "One JSON document on standard output");
-    command->callback([o, &action] { action = [o] { return set(*o); }; });
+    command->callback([o, &action] {
+        action = [o] {
+            o->choice.settings = with_whole_paths(std::move(o->choice.settings));
+            return set(*o);
+        };
+    });
 }
 
 }  // namespace entoptic::app
