@@ -28,6 +28,16 @@ Result<void> write_json(const std::string& path, const Json& document) {
     return failure(fmt::format("Cannot write '{}': {}.", path, error.message()));
 }
 
+namespace {
+
+std::string duration_text(double s) {
+    if (s < 120) return fmt::format("{:.0f} s", s);
+    if (s < 7200) return fmt::format("{:.0f} minutes", s / 60);
+    return fmt::format("{:.1f} hours", s / 3600);
+}
+
+}  // namespace
+
 Progress::Progress(std::string what, bool always)
     : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) == 1), on_(terminal_ || always) {}
 
@@ -38,11 +48,17 @@ Progress::~Progress() {
 void Progress::update(std::uint64_t done, std::uint64_t total) {
     using namespace std::chrono_literals;
     const auto now = Steady::now();
+    const double passed = std::chrono::duration<double>(now - start_).count();
+    if (!told_ && !on_ && passed > 2 && done > 0 && total > done) {
+        const double left = passed / double(done) * double(total - done);
+        told_ = true;
+        if (left > 30) fmt::print(stderr, "entoptic: {} of {} {} took {:.0f} s; the rest takes about {}. --progress tells more.\n", done, total, what_, passed, duration_text(left));
+    }
     if (!on_ || now - start_ < 1s || now - last_ < (terminal_ ? 100ms : 2000ms)) return;
     last_ = now;
     shown_ = true;
     const std::string of = total > 0 ? fmt::format(" of {}", total) : "";
-    const double rate = double(done) / std::chrono::duration<double>(now - start_).count();
+    const double rate = double(done) / passed;
     fmt::print(stderr, "{}{}{} {} ({:.1f} a second){}", terminal_ ? "\r\x1b[K" : "", done, of, what_, rate, terminal_ ? "" : "\n");
     std::fflush(stderr);
 }

@@ -19,7 +19,7 @@ void print_json(const Json& document);
 Result<void> write_json(const std::string& path, const Json& document);
 
 // "12 of 900 frames" on standard error, for work that takes longer than a second or two. Silent where nobody looks
-// (no terminal) unless `always`.
+// (no terminal) unless `always`; but work of more than half a minute says once, wherever, how long it will take.
 class Progress {
 public:
     Progress(std::string what, bool always);
@@ -32,7 +32,7 @@ private:
     using Steady = std::chrono::steady_clock;
     std::string what_;
     bool terminal_, on_;
-    bool shown_ = false;
+    bool shown_ = false, told_ = false;
     Steady::time_point start_ = Steady::now(), last_ = start_;
 };
 

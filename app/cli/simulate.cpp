@@ -1,5 +1,6 @@
 // `entoptic simulate`: the perception stage on calibrated radiance maps, without a headset and without OpenXR.
 #include "app/cli/command.h"
+#include "app/choice_json.h"
 #include "app/cli/output.h"
 #include "app/observer_file.h"
 #include "app/parse.h"
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 
 namespace entoptic::app {
 namespace {
@@ -63,6 +65,23 @@ bool writes(const NumberedName& name, const std::string& text, const char* exten
     return std::filesystem::path(text).extension() == extension || std::filesystem::path(name.with(0, 0)).extension() == extension;
 }
 
+// Nothing that is read is written over.
+Result<void> expect_inputs_kept(const Options& o, const Plan& plan) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    std::set<fs::path> read;
+    for (const InputFile& file : plan.files) read.insert(fs::weakly_canonical(file.path, error));
+    if (!o.trace.empty()) read.insert(fs::weakly_canonical(o.trace, error));
+    std::vector<std::string> written;
+    for (const InputFile& file : plan.files)
+        for (const double time_s : plan.times) written.push_back(plan.output.with(file.number, time_s));
+    if (!o.report.empty()) written.push_back(o.report);
+    for (const std::string& path : written)
+        if (read.count(fs::weakly_canonical(path, error)) > 0)
+            return usage_error(fmt::format("'{}' is an input: the output would take its place. Name another file.", path));
+    return {};
+}
+
 Result<void> plan_output(const Options& o, Plan& plan) {
     ENTOPTIC_TRY(output, NumberedName::parse(o.output));
     plan.output = output;
@@ -77,7 +96,8 @@ Result<void> plan_output(const Options& o, Plan& plan) {
         return usage_error("A numbered sequence needs a frame number in the output's name, such as out_%04d.png.");
     if (!sequence && output.has_number()) return usage_error("One picture has no frame number: take the %d out of the output's name.");
     if (plan.times.size() > 1 && !output.has_time()) return usage_error("Several times need %t in the output's name, such as out_%t.png.");
-    return {};
+    if (o.dither && !writes(output, o.output, ".png")) return usage_error("--dither is for the codes of a .png; an .exr has no codes.");
+    return expect_inputs_kept(o, plan);
 }
 
 Result<void> plan_times(const Options& o, Plan& plan) {
@@ -159,7 +179,9 @@ Result<Selection> plan_selection(const Options& o, const std::optional<Trace>& t
                 choice.parameters[i] = 1;
                 known = true;
             }
-    if (!known)
+    if (selection.choices.empty())
+        fmt::print(stderr, "entoptic: --photographic changes nothing here: no model is chosen.\n");
+    else if (!known)
         fmt::print(stderr,
                    "entoptic: --photographic changes nothing here: these models scatter the whole scene already, not only what the display "
                    "cannot show.\n");
@@ -178,7 +200,23 @@ Result<Plan> make_plan(const Options& o) {
     plan.files = std::move(files);
     ENTOPTIC_CHECK(plan_times(o, plan));
     ENTOPTIC_CHECK(plan_output(o, plan));
+    tell_twice(o.models, "--model");
+    tell_twice(o.settings, "--set");
     return plan;
+}
+
+// What was asked for and cannot be seen in this picture.
+void tell_idle(const Selection& selection, bool has_depth) {
+    const auto is_on = [](const Choice& choice, std::string_view name) {
+        for (std::size_t i = 0; i < choice.parameters.size(); ++i)
+            if (name == choice.entry->parameters[i].name) return choice.parameters[i] > 0.5f;
+        return false;
+    };
+    if (selection.find("dof") && !has_depth)
+        fmt::print(stderr, "entoptic: the picture has no channel Z (metres): without depth all of it stays in focus.\n");
+    for (const Choice& choice : selection.choices)
+        if (is_on(choice, "emission_spectra") && is_on(choice, "photographic"))
+            fmt::print(stderr, "entoptic: {0}.emission_spectra changes nothing with {0}.photographic.\n", choice.entry->slot);
 }
 
 class Simulation {
@@ -189,6 +227,7 @@ public:
 
     Result<Json> run() {
         ENTOPTIC_CHECK(load(plan_.files[0]));
+        tell_idle(plan_.selection, !scene_.depth.data.empty());
         ENTOPTIC_CHECK(start());
         ENTOPTIC_CHECK(plan_.files.size() > 1 ? run_sequence() : run_still());
         return report();
@@ -292,6 +331,7 @@ private:
     }
     Json picture_json(const InputFile& file, double time_s, const std::string& path) const {
         const ViewOutcome view = simulator_->view();
+        const GazeAngles gaze = drivers::angles_of(glm::dvec3(simulator_->eye().gaze_direction));
         Json effects = Json::array();
         for (const EffectOutcome& e : simulator_->effects())
             effects.push_back(
@@ -299,6 +339,7 @@ private:
         return {{"input", file.path},
                 {"output", path},
                 {"time_s", time_s},
+                {"gaze_deg", {gaze.x, gaze.y}},
                 {"pupil_mm", decimal(simulator_->eye().pupil_diameter_mm)},
                 {"scene",
                  {{"min_cd_m2", decimal(view.min_y)},
@@ -323,6 +364,13 @@ private:
         return {{"version", ENTOPTIC_VERSION},
                 {"device", simulator_->device()},
                 {"preset", plan_.selection.preset},
+                {"observer", o_.observer},
+                {"models", o_.models},
+                {"settings", o_.settings},
+                {"photographic", o_.photographic},
+                {"seed", o_.seed},
+                {"adapted_to", o_.adapted_to},
+                {"chosen", choice_json(plan_.selection)},
                 {"projection", kinds[geometry_.kind]},
                 {"size", {geometry_.width, geometry_.height}},
                 {"photometry", {{"scale", scene_.cd_per_unit}, {"source", scene_.scale_source}}},

@@ -180,6 +180,12 @@ TEST_F(Simulate, ASequenceIsNumberedLikeItsInput) {
     EXPECT_EQ(outcome.json()["pictures"].size(), 3u);
     for (const char* name : {"out_007.png", "out_008.png", "out_009.png"}) EXPECT_TRUE(testing::fs::exists(path(name))) << name;
     expect_error(2, "--fps", {"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60"});
+    const std::string before = testing::text_of(path("in_008.exr"));
+    expect_error(2, "is an input", {"simulate", path("in_%03d.exr"), "-o", path("in_%03d.exr"), "--fov", "60", "--fps", "30"});
+    expect_error(2, "is an input", {"simulate", path("in_008.exr"), "-o", path("../" + testing::fs::path(path("x")).parent_path().filename().string() + "/in_008.exr"), "--fov", "60"});
+    EXPECT_EQ(testing::text_of(path("in_008.exr")), before);
+    testing::fs::remove(path("in_008.exr"));
+    expect_error(1, "in_008.exr' is missing", {"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60", "--fps", "30"});
 }
 
 TEST_F(Simulate, ATraceMovesGazeAndPupil) {
@@ -324,6 +330,21 @@ TEST_F(Simulate, TheReferenceAgreesWithTheGpu) {
     for (std::size_t i = 0; i < gpu.data.size(); ++i) ASSERT_NEAR(gpu.data[i] / reference.data[i], 1, 2e-4) << i;
 }
 
+TEST_F(Simulate, TheReportHoldsAllThatARepetitionNeeds) {
+    const auto outcome = entoptic({"simulate", picture("a.exr", even(16, 16, 10)), "-o", path("out.exr"), "--fov", "60", "--gaze", "5,-3", "--seed", "7", "--observer",
+                                   "70-years", "--set", "tone.smoothing_s=1", "--set", "glare.age=60", "--set", "glare.age=65", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("--set glare.age is given more than once"), std::string::npos);
+    const auto report = outcome.json();
+    EXPECT_EQ(report["seed"], 7);
+    EXPECT_EQ(report["observer"], "70-years");
+    EXPECT_EQ(report["settings"].size(), 3u);
+    EXPECT_EQ(report["chosen"]["glare"]["parameters"]["age"], 65);
+    EXPECT_EQ(report["chosen"]["glare"]["parameters"]["wearer_age"], 30);
+    EXPECT_NEAR(report["pictures"][0]["gaze_deg"][0].get<double>(), 5, 1e-4);
+    EXPECT_NEAR(report["pictures"][0]["gaze_deg"][1].get<double>(), -3, 1e-4);
+}
+
 TEST_F(Simulate, TheSameCallGivesTheSameBits) {
     const std::string scene = picture("a.exr", lamp(48, 48, 0.1f, 1e5f));
     for (const char* out : {"a_out.exr", "b_out.exr"}) ASSERT_EQ(entoptic({"simulate", scene, "-o", path(out), "--fov", "60"}).status, 0);
@@ -371,6 +392,9 @@ TEST_F(Simulate, WrongOptionsAreUsageErrors) {
     expect_error(2, ".png", {"simulate", square, "-o", path("out.jpg"), "--fov", "60"});
     expect_error(2, "--projection", call({"--projection", "fisheye"}));
     expect_error(2, "equirect", call({"--projection", "equirect", "--fov", "60"}));
+    expect_error(2, "twice as wide", call({"--projection", "equirect"}));
+    expect_error(2, "--luminance-scale", call({"--fov", "60", "--luminance-scale", "0"}));
+    expect_error(2, "--dither", call({"--fov", "60", "--dither"}));
     expect_error(1, "no folder", {"simulate", square, "-o", path("nowhere/out.png"), "--fov", "60"});
     expect_error(2, "IN", {"simulate", "-o", path("out.png")});
 }

@@ -22,9 +22,10 @@ constexpr double degree = 0.017453292519943295;
 Result<double> choose_scale(const std::string& path, const SceneOptions& options, std::optional<float> white, std::string& source) {
     const auto checked = [&](double value) -> Result<double> {
         if (value >= min_scale && value <= max_scale) return value;
-        return failure(fmt::format(
+        const std::string what = fmt::format(
             "The luminance scale of '{}' is {:g} cd/m² ({}); it must lie between {:g} and {:g}. Give another with --luminance-scale.", path,
-            value, source, min_scale, max_scale));
+            value, source, min_scale, max_scale);
+        return source.starts_with("--") ? usage_error(what) : failure(what);
     };
     if (options.luminance_scale) {
         source = "--luminance-scale";
@@ -75,16 +76,19 @@ std::optional<int> number_in(const std::string& file, const std::string& prefix,
     return std::stoi(digits);
 }
 
-std::optional<int> lowest_number(const std::string& name) {
+// The numbers of the files that `name` stands for, in order.
+std::vector<int> numbers_of(const NumberedName& numbered, const std::string& name) {
     const fs::path pattern(name);
     const std::string file = pattern.filename();
     const auto percent = file.find('%'), d = file.find('d', percent);
-    std::optional<int> lowest;
+    std::vector<int> numbers;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(pattern.has_parent_path() ? pattern.parent_path() : fs::path("."), error))
-        if (const auto n = number_in(entry.path().filename(), file.substr(0, percent), file.substr(d + 1)))
-            lowest = std::min(*n, lowest.value_or(*n));
-    return lowest;
+    for (const auto& entry : fs::directory_iterator(pattern.has_parent_path() ? pattern.parent_path() : fs::path("."), error)) {
+        const auto n = number_in(entry.path().filename(), file.substr(0, percent), file.substr(d + 1));
+        if (n && fs::path(numbered.with(*n, 0)).filename() == entry.path().filename()) numbers.push_back(*n);
+    }
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
 }
 
 double clean(float v) {
@@ -109,12 +113,12 @@ Result<std::vector<InputFile>> input_files(const std::string& name) {
     ENTOPTIC_TRY(numbered, NumberedName::parse(name));
     if (numbered.has_time()) return usage_error(fmt::format("'{}': %t belongs into the output's name.", name));
     if (!numbered.has_number()) return std::vector<InputFile>{{name, 0}};
-    const auto first = lowest_number(name);
     std::vector<InputFile> files;
-    for (int n = first.value_or(0); first; ++n) {
-        const std::string path = numbered.with(n, 0);
-        if (!fs::exists(path)) break;
-        files.push_back({path, n});
+    for (const int n : numbers_of(numbered, name)) {
+        if (!files.empty() && n != files.back().number + 1)
+            return failure(fmt::format("'{}' is missing, though there are frames before it and after it. Make it, or take the later ones elsewhere: time must not jump.",
+                                       numbered.with(files.back().number + 1, 0)));
+        files.push_back({numbered.with(n, 0), n});
     }
     if (files.empty()) return failure(fmt::format("There is no file like '{}'. Check the folder and the number of digits.", name));
     return files;
@@ -129,6 +133,8 @@ Result<EyeGeometry> scene_geometry(std::optional<Projection> projection, std::op
     EyeGeometry g{};
     g.width = static_cast<uint>(width);
     g.height = static_cast<uint>(height);
+    if (projection == Projection::equirect && width != 2 * height)
+        return usage_error(fmt::format("--projection equirect shows the full sphere, twice as wide as high; this picture has {} x {} pixels.", width, height));
     if (projection.value_or(fov_deg ? Projection::rectilinear : Projection::equirect) == Projection::equirect) {
         if (fov_deg) return usage_error("--fov does not go with --projection equirect, which always shows the full sphere.");
         g.kind = geometry_equirect;

@@ -26,7 +26,7 @@ struct Scene {
 
 Result<Scene> load_scene(const std::string& path, const SceneOptions& options);
 
-// The files of `name`: itself, or for a numbered name the unbroken run that starts at number 0 or 1 (else the lowest there is).
+// The files of `name`: itself, or for a numbered name all there are, from the lowest number on; a number left out between them is an error.
 struct InputFile {
     std::string path;
     int number = 0;

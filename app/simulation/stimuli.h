@@ -31,6 +31,7 @@ struct Phase {
 
 struct StimulusEntry {
     const char* name;
+    const char* preset;   // whose models the experiment was made for
     const char* source;   // paper, section or figure
     const char* summary;
     std::vector<Phase> (*phases)(const StimulusOptions& options);
