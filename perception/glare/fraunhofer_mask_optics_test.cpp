@@ -2,6 +2,7 @@
 // The aperture and its Fraunhofer diffraction against closed forms, on the CPU.
 #include "perception/glare/fraunhofer_mask_math.glsl"
 #include "perception/glare/fraunhofer_mask_psf.h"
+#include "perception/glare/fraunhofer_mask_tables.h"
 #include "perception/glare/glare_math.glsl"
 #include "perception/testing/oracles.h"
 
@@ -256,6 +257,59 @@ TEST(FraunhoferOptics, SigmoidIsTumblins) {
     for (const OracleRow& row : oracle("kakimoto_sigmoid")) {
         EXPECT_LT(relative_error(glare::tumblin_sigmoid(row.at("x")), row.at("tumblin1999_form")), 1e-7);
         EXPECT_LT(relative_error(fraunhofer_mask::printed_sigmoid(row.at("x")), row.at("eq7_as_printed")), 1e-7);
+    }
+}
+
+// Light between two sines that the table sends there (the mean over its azimuths), green.
+double in_ring(const std::vector<vec3>& table, double from, double to) {
+    using namespace fraunhofer_mask;
+    constexpr int steps = 1000;
+    const double step = std::log(to / from) / steps;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double sine = from * std::exp((i + 0.5) * step);
+        const auto row = std::min(static_cast<uint>(mask_row(sine) + 0.5), mask_rows - 1);
+        for (uint column = 0; column < mask_columns; ++column)
+            sum += 2 * mask_step() * static_cast<double>(table[row * mask_columns + column].y) * step / sine;
+    }
+    return sum;
+}
+double in_ring(const Psf& psf, double from_per_mm, double to_per_mm) {
+    double sum = 0;
+    for (int y = -psf.most; y <= psf.most; ++y)
+        for (int x = -psf.most; x <= psf.most; ++x) {
+            const double f = std::hypot(x, y) * psf.bin_per_mm;
+            if (f >= from_per_mm && f < to_per_mm) sum += psf.at(x, y) * psf.bin_per_mm * psf.bin_per_mm;
+        }
+    return sum;
+}
+
+// 550 nm alone, so that nothing is averaged over colours; against a transform of twice as many samples.
+TEST(FraunhoferOptics, TableHoldsTheTransformsLight) {
+    constexpr double pupil_mm = 4, lambda_mm = 550e-6;
+    FraunhoferMaskParams lashes = bare(), hexagon = bare(), filter = bare();
+    lashes.lids = 1, lashes.lashes = 40, lashes.lash_width_mm = 0.08f, lashes.lash_length_mm = 8, lashes.lash_curl = 0.3f, lashes.lid_open = 0.5625f;
+    hexagon.blades = 6;
+    filter.filter_directions = 2, filter.filter_spacing_mm = 0.8f, filter.filter_width_mm = 0.04f, filter.filter_rotation_deg = 20;
+    const struct {
+        const char* what;
+        FraunhoferMaskParams params;
+        double near, far;     // largest difference of a band, within and beyond the extent of the table's transform
+    } cases[] = {{"half-closed lashes", lashes, 0.015, 0.03}, {"hexagon", hexagon, 0.04, 0.1}, {"filter", filter, 0.05, 0.16}};
+    for (const auto& c : cases) {
+        const auto psf = [&](int n) { return make_psf(raster_aperture(c.params, nullptr, {pupil_mm, 1, 0}, n, mask_plane_over_pupil * pupil_mm)); };
+        const Psf fine = psf(2 * mask_samples), usual = psf(mask_samples);
+        const std::vector<vec3> table = make_mask_table(usual, {{lambda_mm * 1000}, {glm::dvec3(1)}});
+        double near = 0, far = 0;
+        for (double from = 0.2 * degree; 1.6 * from < fine.used_per_mm() * lambda_mm; from *= 1.6) {
+            const double to = 1.6 * from, error = relative_error(in_ring(table, from, to), in_ring(fine, from / lambda_mm, to / lambda_mm));
+            double& worst = to < usual.used_per_mm() * lambda_mm ? near : far;
+            worst = std::max(worst, error);
+        }
+        ledger(name, c.what, "light of bands within the transform max relative", near);
+        ledger(name, c.what, "light of bands beyond the transform max relative", far);
+        EXPECT_LT(near, c.near) << c.what;
+        EXPECT_LT(far, c.far) << c.what;
     }
 }
 
