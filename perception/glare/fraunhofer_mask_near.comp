@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // The near field at full resolution, for tiles on the list: what the light above the threshold does to the pixels around it. One workgroup a
-// tile; the kernel is made for the tile's own pixels per degree and place in the zones. The picture in reach passes through shared memory in
+// tile; the kernel is made for the tile's own pixels per degree, zone by zone. The picture in reach passes through shared memory in
 // bands as high as a tile, and bands without light are passed over.
 #include "perception/glare/fraunhofer_mask_gpu.h"
 #include "perception/glare/glare_gpu.h"
@@ -37,16 +37,12 @@ shared uint lit_rows;                          // a bit for each row of the band
 shared int lit_left, lit_right;                // and where, in columns from the tile's first
 shared uint losers;                            // of the tile's pixels, have some light to lose
 
-// One table or a mixture of the next two zones', and of the two tables between which the eye is.
-vec3 kernel(vec2 offset, float width, float place) {
+// One table, or a mixture of the two between which the eye is.
+vec3 kernel(vec2 offset, float width, uint zone) {
+    const uint at = zone * mask_entries;
     vec3 sum = vec3(0.0);
-    for (uint z = uint(place); z < min(uint(place) + 2, push.zones); ++z) {
-        const float share = zone_share(place, z);
-        if (share <= 0.0) continue;
-        const uint at = z * mask_entries;
-        if (push.blend < 1.0) sum += share * (1.0 - push.blend) * mask_kernel(push.first_entry + at, offset, width);
-        if (push.blend > 0.0) sum += share * push.blend * mask_kernel(push.second_entry + at, offset, width);
-    }
+    if (push.blend < 1.0) sum += (1.0 - push.blend) * mask_kernel(push.first_entry + at, offset, width);
+    if (push.blend > 0.0) sum += push.blend * mask_kernel(push.second_entry + at, offset, width);
     return sum * (push.strength * near_share(length(offset), push.near));
 }
 
@@ -66,12 +62,12 @@ mat2 pixel_steps(EyeGeometry g, vec3 middle, vec3 across, vec3 down) {
 }
 
 // Integral of the kernel over the pixel at d, sr.
-vec3 pixel_weight(ivec2 d, mat2 steps, float solid_angle, float place) {
+vec3 pixel_weight(ivec2 d, mat2 steps, float solid_angle, uint zone) {
     const int distance = max(abs(d.x), abs(d.y)), samples = distance <= 1 ? 16 : distance <= 2 ? 8 : 4;
     const float width = sqrt(solid_angle) / float(samples);
     vec3 sum = vec3(0.0);
     for (int j = 0; j < samples; ++j)
-        for (int i = 0; i < samples; ++i) sum += kernel(steps * (vec2(d) + (vec2(i, j) + 0.5) / float(samples) - 0.5), width, place);
+        for (int i = 0; i < samples; ++i) sum += kernel(steps * (vec2(d) + (vec2(i, j) + 0.5) / float(samples) - 0.5), width, zone);
     return sum * (solid_angle / float(samples * samples));
 }
 
@@ -83,14 +79,33 @@ int column_of(int x, bool sphere) {
 
 vec3 excess(vec4 pixel, float threshold) { return max(pixel.rgb - threshold, vec3(0.0)); }
 
-void make_weights(int radius, mat2 steps, float solid_angle, float place) {
+void make_weights(int radius, mat2 steps, float solid_angle, uint zone) {
     const int side = 2 * radius + 1, middle = (side * side - 1) / 2;
     for (int i = int(gl_LocalInvocationIndex); i <= middle; i += int(tile_width * tile_height))
-        weights[i] = i == middle ? vec3(0.0) : pixel_weight(ivec2(i % side, i / side) - radius, steps, solid_angle, place);
+        weights[i] = i == middle ? vec3(0.0) : pixel_weight(ivec2(i % side, i / side) - radius, steps, solid_angle, zone);
 }
 
-// Rows first.y .. first.y + tile_height - 1 of the view, from `radius` columns before column first.x to as many behind the tile.
-void read_band(uint base, ivec2 first, int radius, float threshold, bool sphere) {
+// Share of the light from a pixel that meets the obstacles as the zone has them.
+float share_of(EyeGeometry g, vec2 px, uint zone) {
+    return push.zones > 1 ? zone_share(zone_place(geometry_direction(g, px + 0.5), push.zones), zone) : 1.0;
+}
+
+// Zones that the light in reach of a tile may be of. On a sphere left and right meet behind the head.
+uvec2 zones_in_reach(EyeGeometry g, vec2 low, vec2 high) {
+    if (push.zones == 1 || g.kind == geometry_equirect) return uvec2(0, push.zones - 1);
+    float least = float(push.zones), most = 0.0;
+    for (uint i = 0; i < 4; ++i) {
+        const vec2 px = clamp(vec2((i & 1u) == 0 ? low.x : high.x, (i & 2u) == 0 ? low.y : high.y), vec2(0.0), vec2(push.width, push.height));
+        const float place = zone_place(geometry_direction(g, px), push.zones);
+        least = min(least, place);
+        most = max(most, place);
+    }
+    return uvec2(floor(least), min(ceil(most), float(push.zones - 1)));
+}
+
+// Rows first.y .. first.y + tile_height - 1 of the view, from `radius` columns before column first.x to as many behind the tile: light of the zone.
+void read_band(EyeGeometry g, uint base, ivec2 first, int radius, float threshold, uint zone) {
+    const bool sphere = g.kind == geometry_equirect;
     const uint reach = tile_width + 2 * uint(radius);
     if (gl_LocalInvocationIndex == 0) {
         lit_rows = 0u;
@@ -105,6 +120,7 @@ void read_band(uint base, ivec2 first, int radius, float threshold, bool sphere)
             const vec4 pixel = scene[base + uint(y) * push.width + uint(x)];
             if (pixel.w > 0.0) source = excess(pixel, threshold);
         }
+        if (source.r != absent && source != vec3(0.0)) source *= share_of(g, vec2(x, y), zone);
         light[uint(row) * reach_width + i % reach] = source;
         if (source.r == absent || source == vec3(0.0)) continue;
         atomicOr(lit_rows, 1u << uint(row));
@@ -157,20 +173,24 @@ void main() {
         if (own != vec3(0.0)) atomicOr(losers, 1u);
         barrier();
         const int bands = (radius + int(tile_height) - 1) / int(tile_height);
-        bool have_weights = false;
+        const uvec2 zones = zones_in_reach(g, vec2(corner) - float(radius), vec2(corner) + vec2(tile_width, tile_height) + float(radius));
+        const mat2 steps = pixel_steps(g, geometry_direction(g, middle), across, down);
         vec3 sum = vec3(0.0);
-        for (int band = -bands; band <= bands; ++band) {
-            const int row = band * int(tile_height);
-            barrier();
-            read_band(base, ivec2(corner) + ivec2(0, row), radius, threshold, g.kind == geometry_equirect);
-            if (lit_rows == 0u && losers == 0u) continue;
-            if (!have_weights) {
-                const vec3 towards = geometry_direction(g, middle);
-                make_weights(radius, pixel_steps(g, towards, across, down), length(cross(across, down)), zone_place(towards, push.zones));
-                have_weights = true;
+        for (uint zone = zones.x; zone <= zones.y; ++zone) {
+            const vec3 own_of_zone = own == vec3(0.0) ? own : own * share_of(g, vec2(px), zone);
+            bool have_weights = false;
+            for (int band = -bands; band <= bands; ++band) {
+                const int row = band * int(tile_height);
                 barrier();
+                read_band(g, base, ivec2(corner) + ivec2(0, row), radius, threshold, zone);
+                if (lit_rows == 0u && losers == 0u) continue;
+                if (!have_weights) {
+                    make_weights(radius, steps, length(cross(across, down)), zone);
+                    have_weights = true;
+                    barrier();
+                }
+                if (wanted) sum += from_band(row - int(gl_LocalInvocationID.y), radius, own_of_zone);
             }
-            if (wanted) sum += from_band(row - int(gl_LocalInvocationID.y), radius, own);
         }
         if (inside) near_light[at] = sum;
     }
