@@ -101,7 +101,9 @@ bool read_settings(const toml::node& node, const Source& source, Config& c) {
             const auto number = value.is_number() ? value.value<double>() : std::nullopt;
             if (!word && (!number || !std::isfinite(*number))) return false;
             const bool is_path = word && slot != "foveation" && !word->empty();
-            const std::string text = !word ? fmt::format("{}", *number) : is_path ? (fs::absolute(source.path).parent_path() / *word).string() : *word;
+            const std::string text = !word     ? fmt::format("{}", *number)
+                                     : is_path ? (fs::absolute(source.path).parent_path() / *word).string()
+                                               : *word;
             c.settings.push_back({fmt::format("{}.{}={}", slot.str(), name.str(), text), source.origin(value)});
         }
     }
@@ -192,8 +194,9 @@ const Key keys[] = {
      ENTOPTIC_ORIGIN(observer)},
     {"models", "a table of slot = \"model\"", "other models than the preset's", true, read_models,
      [](const Config& c) { return joined(c.models); }, [](const Config& c) { return origins(c.models); }},
-    {"settings", "a table of slot.parameter = number, = \"path\" for a file, or foveation.inverse = \"off\", \"exact\" or \"fitted\"", "other parameters than the preset's", true, read_settings,
-     [](const Config& c) { return joined(c.settings); }, [](const Config& c) { return origins(c.settings); }},
+    {"settings", "a table of slot.parameter = number, = \"path\" for a file, or foveation.inverse = \"off\", \"exact\" or \"fitted\"",
+     "other parameters than the preset's", true, read_settings, [](const Config& c) { return joined(c.settings); },
+     [](const Config& c) { return origins(c.settings); }},
     {"luminance", "a number from 1e-6 to 1e6", "cd/m² of linear 1 in layers that do not say; default: the panel's white", true,
      read_luminance, [](const Config& c) { return c.luminance.value ? fmt::format("{:g}", *c.luminance.value) : "(the panel's white)"; },
      ENTOPTIC_ORIGIN(luminance)},
@@ -381,7 +384,9 @@ Error with_origin(Error error, const Config& config) {
         for (const Setting<std::string>& item : *list) {
             const std::string name = item.value.substr(0, item.value.find('='));
             const bool is_model = list == &config.models;
-            if (item.origin == "command line" || item.origin == "default" || error.message.find(is_model ? item.value : name) == std::string::npos) continue;
+            if (item.origin == "command line" || item.origin == "default" ||
+                error.message.find(is_model ? item.value : name) == std::string::npos)
+                continue;
             error.message = fmt::format("{}: {}", item.origin, error.message);
             return error;
         }

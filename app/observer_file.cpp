@@ -48,7 +48,8 @@ Result<double> value_of(const std::string& path, const toml::node& node, std::st
         return wrong(path, node, fmt::format("there is no slot '{}'. Slots: {}.", slot, fmt::join(slots, ", ")));
     const ParameterList known = parameters_named(slot, name);
     if (known.empty())
-        return wrong(path, node, fmt::format("no model of the slot '{}' has a parameter '{}'. `entoptic effects` lists what there is.", slot, name));
+        return wrong(path, node,
+                     fmt::format("no model of the slot '{}' has a parameter '{}'. `entoptic effects` lists what there is.", slot, name));
     const auto number = node.is_number() ? node.value<double>() : std::nullopt;
     if (!number) return wrong(path, node, fmt::format("'{}.{}' must be a number: {}.", slot, name, ranges_of(known)));
     if (std::none_of(known.begin(), known.end(), [&](const auto* p) { return p->allows(*number); }))
@@ -101,8 +102,8 @@ Result<void> check_range(const perception::Selection& selection, const PersonSet
     const perception::ModelEntry& entry = *selection.find(wanted.slot)->entry;
     for (const perception::ParameterInfo& p : entry.parameters)
         if (wanted.parameter == p.name && !p.allows(wanted.value))
-            return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range of the model {}: {}.", observer, wanted.slot, wanted.parameter, wanted.value,
-                                           entry.name, range_text(p)));
+            return usage_error(fmt::format("Observer '{}': {}.{} = {} is out of range of the model {}: {}.", observer, wanted.slot,
+                                           wanted.parameter, wanted.value, entry.name, range_text(p)));
     return {};
 }
 
@@ -115,11 +116,13 @@ bool has_parameter(const perception::Selection& selection, const PersonSetting& 
 
 // Who looks at the display, where a person's file does not say: the mean eye that the person's numbers are compared with (CIE 146:2002; the
 // models' defaults for the person).
-const PersonSetting mean_wearer[] = {{"glare", "wearer_age", 30}, {"glare", "wearer_pigment", 0.5}, {"glare", "wearer_straylight_factor", 1}};
+const PersonSetting mean_wearer[] = {
+    {"glare", "wearer_age", 30}, {"glare", "wearer_pigment", 0.5}, {"glare", "wearer_straylight_factor", 1}};
 
 std::vector<PersonSetting> with_wearer(std::vector<PersonSetting> person) {
     for (const PersonSetting& mean : mean_wearer)
-        if (std::none_of(person.begin(), person.end(), [&](const PersonSetting& s) { return s.slot == mean.slot && s.parameter == mean.parameter; }))
+        if (std::none_of(person.begin(), person.end(),
+                         [&](const PersonSetting& s) { return s.slot == mean.slot && s.parameter == mean.parameter; }))
             person.push_back(mean);
     return person;
 }

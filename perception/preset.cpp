@@ -49,8 +49,7 @@ Result<void> set_parameter(ModelOfSlot& chosen, std::string_view slot, std::stri
         const ParameterInfo& info = choice.entry->parameters[i];
         names.emplace_back(info.name);
         if (name != info.name) continue;
-        if (!info.allows(value))
-            return usage_error(fmt::format("{}.{} = {} is out of range: {}.", slot, name, value, range_text(info)));
+        if (!info.allows(value)) return usage_error(fmt::format("{}.{} = {} is out of range: {}.", slot, name, value, range_text(info)));
         choice.parameters[i] = static_cast<float>(value);
         return {};
     }
@@ -64,7 +63,8 @@ tl::unexpected<Error> no_file(std::string_view slot, std::string_view name) {
     for (const ModelEntry* entry : models())
         for (const FileInfo& file : entry->files)
             if (entry->slot == slot && file.name == name) with.push_back(fmt::format("{}={}", slot, entry->name));
-    return usage_error(fmt::format("{}.{} is a file that only {} reads. Add --model {}.", slot, name, fmt::join(with, " and "), with.front()));
+    return usage_error(
+        fmt::format("{}.{} is a file that only {} reads. Add --model {}.", slot, name, fmt::join(with, " and "), with.front()));
 }
 
 // False when no model of the slot has a file of this name.

@@ -15,7 +15,8 @@ std::string refusal(const char* preset, const std::vector<std::string>& models, 
 
 TEST(Doubling, PresetsHaveNone) {
     for (const Preset& preset : presets())
-        for (Viewer viewer : {Viewer::wearer, Viewer::onlooker, Viewer::reader}) EXPECT_EQ(refusal(std::string(preset.name).c_str(), {}, {}, viewer), "") << preset.name;
+        for (Viewer viewer : {Viewer::wearer, Viewer::onlooker, Viewer::reader})
+            EXPECT_EQ(refusal(std::string(preset.name).c_str(), {}, {}, viewer), "") << preset.name;
 }
 
 TEST(Doubling, WhatTheWearersEyeDoesIsRefusedForAWearerOnly) {
@@ -47,7 +48,8 @@ TEST(Doubling, WhatTheWearersEyeDoesIsRefusedForAWearerOnly) {
 }
 
 TEST(Doubling, OnlyTheWearersOwnLidIsThere) {
-    EXPECT_NE(refusal("combined", {"eyelid=blink"}, {}, Viewer::wearer).find("eyelid=blink counts an effect twice: the wearer's own lid"), std::string::npos);
+    EXPECT_NE(refusal("combined", {"eyelid=blink"}, {}, Viewer::wearer).find("eyelid=blink counts an effect twice: the wearer's own lid"),
+              std::string::npos);
     EXPECT_NE(refusal("luidolt2020", {"eyelid=blink"}, {}, Viewer::wearer), "");
     EXPECT_EQ(refusal("combined", {"eyelid=blink"}, {}, Viewer::onlooker), "");
 }

@@ -139,8 +139,9 @@ Result<void> expect_numbers(const CurveRequest& request, const Rows& rows) {
     for (const auto& row : rows)
         for (std::size_t i = 1; i < row.size(); ++i)
             if (!std::isfinite(row[i]))
-                return failure(fmt::format("{} of {} has no value at {:g} ({}): these settings leave nothing to measure, such as an eye that lets no light in.",
-                                           request.curve().kind->name, request.curve().model, row[0], columns[i]));
+                return failure(fmt::format(
+                    "{} of {} has no value at {:g} ({}): these settings leave nothing to measure, such as an eye that lets no light in.",
+                    request.curve().kind->name, request.curve().model, row[0], columns[i]));
     return {};
 }
 

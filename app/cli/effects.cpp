@@ -83,7 +83,8 @@ void print_table() {
             if (entry->slot != slot) continue;
             fmt::print("  {}: {}\n", entry->name, entry->summary);
             for (const ParameterInfo& p : entry->parameters) print_parameter(slot, p);
-            for (const FileInfo& f : entry->files) fmt::print("      {:<34} none  [a path]\n          {}\n", fmt::format("{}.{}", slot, f.name), f.meaning);
+            for (const FileInfo& f : entry->files)
+                fmt::print("      {:<34} none  [a path]\n          {}\n", fmt::format("{}.{}", slot, f.name), f.meaning);
         }
     }
     fmt::print("\nfoveation  (off in every preset): a smaller image about the gaze that the models work on\n"

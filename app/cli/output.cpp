@@ -49,10 +49,17 @@ void Progress::update(std::uint64_t done, std::uint64_t total) {
     using namespace std::chrono_literals;
     const auto now = Steady::now();
     const double passed = std::chrono::duration<double>(now - start_).count();
-    if (!told_ && !on_ && passed > 2 && done > 0 && total > done) {
-        const double left = passed / double(done) * double(total - done);
+    if (done > 0 && first_done_ == 0) {
+        first_ = now;
+        first_done_ = done;
+    }
+    const double since_first = std::chrono::duration<double>(now - first_).count();
+    if (!told_ && !on_ && done > first_done_ && total > done && since_first > 3) {
+        const double left = since_first / double(done - first_done_) * double(total - done);
         told_ = true;
-        if (left > 30) fmt::print(stderr, "entoptic: {} of {} {} took {:.0f} s; the rest takes about {}. --progress tells more.\n", done, total, what_, passed, duration_text(left));
+        if (left > 30)
+            fmt::print(stderr, "entoptic: {} of {} {} are done; the rest takes about {}. --progress tells more.\n", done, total, what_,
+                       duration_text(left));
     }
     if (!on_ || now - start_ < 1s || now - last_ < (terminal_ ? 100ms : 2000ms)) return;
     last_ = now;

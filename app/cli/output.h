@@ -33,7 +33,8 @@ private:
     std::string what_;
     bool terminal_, on_;
     bool shown_ = false, told_ = false;
-    Steady::time_point start_ = Steady::now(), last_ = start_;
+    std::uint64_t first_done_ = 0;  // by the first update that had any: what came before is no measure
+    Steady::time_point start_ = Steady::now(), last_ = start_, first_ = start_;
 };
 
 }  // namespace entoptic::app

@@ -159,7 +159,8 @@ Result<void> check_against_config(const Options& o) {
     }
     models.insert(models.end(), o.models.begin(), o.models.end());
     settings.insert(settings.end(), o.settings.begin(), o.settings.end());
-    const auto chosen = select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value), perception::Viewer::wearer);
+    const auto chosen = select_effects(o.preset.value_or(base.preset.value), models, settings, o.observer.value_or(base.observer.value),
+                                       perception::Viewer::wearer);
     if (!chosen) return forward_error(o.preset ? chosen.error() : with_origin(chosen.error(), base));
     return {};
 }

@@ -136,7 +136,8 @@ Result<void> plan_eye(const Options& o, Plan& plan) {
     if (o.trace.empty()) return {};
     ENTOPTIC_TRY(trace, Trace::read(o.trace));
     if (o.gaze && trace.has_gaze()) return usage_error(fmt::format("--gaze does not go with '{}', which has a gaze of its own.", o.trace));
-    if (o.pupil && trace.has_pupil()) return usage_error(fmt::format("--pupil does not go with '{}', which has pupils of its own.", o.trace));
+    if (o.pupil && trace.has_pupil())
+        return usage_error(fmt::format("--pupil does not go with '{}', which has pupils of its own.", o.trace));
     plan.trace = std::move(trace);
     return {};
 }
@@ -159,8 +160,9 @@ Result<void> plan_pupil(const Options& o, Plan& plan) {
     if (!choice) return {};
     if (says_model_of(o, "pupil")) {
         if (plan.pupil_mm || (plan.trace && plan.trace->has_pupil())) return {};
-        return usage_error(fmt::format("--model pupil={} needs pupils as an eye tracker measured them: give --pupil MM, or --trace with pupil_mm.",
-                                       choice->entry->name));
+        return usage_error(
+            fmt::format("--model pupil={} needs pupils as an eye tracker measured them: give --pupil MM, or --trace with pupil_mm.",
+                        choice->entry->name));
     }
     for (std::size_t i = 0; i < choice->parameters.size(); ++i)
         if (std::string_view(choice->entry->parameters[i].name) == "age") plan.age = static_cast<double>(choice->parameters[i]);
@@ -402,9 +404,13 @@ void tell(const Json& report) {
     if (cleaned > 0)
         fmt::print(stderr, "entoptic: {} pixels held NaN, an infinity, a negative or more than 1e8 cd/m² and were brought into range.\n",
                    cleaned);
-    if (const Json& trace = report["trace"]; trace.is_object() && trace["rows_without_gaze"].get<int>() + trace["rows_without_pupil"].get<int>() > 0)
-        fmt::print(stderr, "entoptic: of {} rows in '{}' {} have no gaze and {} no pupil that an eye can have: held, then relaxed, as when a tracker loses the eye.\n",
-                   trace["rows"].get<int>(), trace["file"].get<std::string>(), trace["rows_without_gaze"].get<int>(), trace["rows_without_pupil"].get<int>());
+    if (const Json& trace = report["trace"];
+        trace.is_object() && trace["rows_without_gaze"].get<int>() + trace["rows_without_pupil"].get<int>() > 0)
+        fmt::print(stderr,
+                   "entoptic: of {} rows in '{}' {} have no gaze and {} no pupil that an eye can have: held, then relaxed, as when a "
+                   "tracker loses the eye.\n",
+                   trace["rows"].get<int>(), trace["file"].get<std::string>(), trace["rows_without_gaze"].get<int>(),
+                   trace["rows_without_pupil"].get<int>());
     for (const Json& error : report["errors"]) fmt::print(stderr, "entoptic: an effect is off: {}\n", error.get<std::string>());
 }
 
@@ -437,7 +443,8 @@ void add_simulate(CLI::App& app, Action& action) {
     c->add_option("--downscale", o->scene.downscale, "Average squares of K x K pixels first")->check(CLI::Range(1, 64));
     c->add_option("--fps", o->fps, "Frames a second of a numbered sequence")->check(CLI::Range(0.01, 10000.0));
     c->add_option("--gaze", o->gaze, "X,Y in degrees from the centre, right and up positive");
-    c->add_option("--trace", o->trace, "CSV file: time_s, gaze_x_deg, gaze_y_deg, pupil_mm, blink; filtered as an eye tracker's samples are");
+    c->add_option("--trace", o->trace,
+                  "CSV file: time_s, gaze_x_deg, gaze_y_deg, pupil_mm, blink; filtered as an eye tracker's samples are");
     c->add_option("--pupil", o->pupil, "Pupil diameter in mm, or 'model' (from the scene's mean luminance), of the eye in the scene");
     c->add_option("--adapted-to", o->adapted_to, "What the eye was adapted to before: cd/m², or 'scene'");
     c->add_option("--at", o->at, "Seconds after the scene appears, such as 0,0.5,10");

@@ -182,7 +182,9 @@ TEST_F(Simulate, ASequenceIsNumberedLikeItsInput) {
     expect_error(2, "--fps", {"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60"});
     const std::string before = testing::text_of(path("in_008.exr"));
     expect_error(2, "is an input", {"simulate", path("in_%03d.exr"), "-o", path("in_%03d.exr"), "--fov", "60", "--fps", "30"});
-    expect_error(2, "is an input", {"simulate", path("in_008.exr"), "-o", path("../" + testing::fs::path(path("x")).parent_path().filename().string() + "/in_008.exr"), "--fov", "60"});
+    expect_error(2, "is an input",
+                 {"simulate", path("in_008.exr"), "-o",
+                  path("../" + testing::fs::path(path("x")).parent_path().filename().string() + "/in_008.exr"), "--fov", "60"});
     EXPECT_EQ(testing::text_of(path("in_008.exr")), before);
     testing::fs::remove(path("in_008.exr"));
     expect_error(1, "in_008.exr' is missing", {"simulate", path("in_%03d.exr"), "-o", path("out_%03d.png"), "--fov", "60", "--fps", "30"});
@@ -206,9 +208,12 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
     expect_error(1, "bad.csv:3", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
     write("bad.csv", "time_s,pupil_mm\n0,3000\n1,3100\n");
     expect_error(1, "no row has a pupil_mm", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
-    expect_error(2, "--gaze", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--gaze", "1,1"});
-    expect_error(2, "--pupil", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--pupil", "3"});
-    expect_error(2, "--trace with pupil_mm", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--model", "pupil=residual_pupil"});
+    expect_error(2, "--gaze",
+                 {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--gaze", "1,1"});
+    expect_error(2, "--pupil",
+                 {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("trace.csv"), "--pupil", "3"});
+    expect_error(2, "--trace with pupil_mm",
+                 {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--model", "pupil=residual_pupil"});
     write("worse.csv", "time_s,colour\n");
     expect_error(1, "'colour' is no column",
                  {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("worse.csv")});
@@ -216,10 +221,11 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
 
 // A pupil that is not found for half a second is held, then relaxes towards that of the scene; one that jumps is no faster than an eye's.
 TEST_F(Simulate, ATraceIsFilteredAsATrackersSamplesAre) {
-    const std::string scene = picture("a.exr", even(16, 16, 1e4f));   // of 2.1 mm
+    const std::string scene = picture("a.exr", even(16, 16, 1e4f));  // of 2.1 mm
     const auto pupils = [&](const std::string& trace, const std::string& times) {
         write("trace.csv", trace);
-        const auto outcome = entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "100", "--trace", path("trace.csv"), "--at", times, "--json"});
+        const auto outcome =
+            entoptic({"simulate", scene, "-o", path("out_%t.exr"), "--fov", "100", "--trace", path("trace.csv"), "--at", times, "--json"});
         EXPECT_EQ(outcome.status, 0) << outcome.err;
         std::vector<double> mm;
         const auto document = outcome.json();
@@ -231,7 +237,7 @@ TEST_F(Simulate, ATraceIsFilteredAsATrackersSamplesAre) {
     for (int i = 0; i < 80; ++i) volatile_pupil += std::to_string(i * 0.025) + (i % 2 ? ",2\n" : ",8\n");
     const auto [held, said] = pupils(lost, "0.5,0.9,1.6,1.9");
     EXPECT_NEAR(held[0], 6, 1e-4);
-    EXPECT_NEAR(held[1], 6, 1e-4);   // found last at 0.5 s
+    EXPECT_NEAR(held[1], 6, 1e-4);  // found last at 0.5 s
     EXPECT_LT(held[2], 5.5);
     EXPECT_LT(held[3], held[2]);
     EXPECT_GT(held[3], 2.1);
@@ -331,8 +337,9 @@ TEST_F(Simulate, TheReferenceAgreesWithTheGpu) {
 }
 
 TEST_F(Simulate, TheReportHoldsAllThatARepetitionNeeds) {
-    const auto outcome = entoptic({"simulate", picture("a.exr", even(16, 16, 10)), "-o", path("out.exr"), "--fov", "60", "--gaze", "5,-3", "--seed", "7", "--observer",
-                                   "70-years", "--set", "tone.smoothing_s=1", "--set", "glare.age=60", "--set", "glare.age=65", "--json"});
+    const auto outcome =
+        entoptic({"simulate", picture("a.exr", even(16, 16, 10)), "-o", path("out.exr"), "--fov", "60", "--gaze", "5,-3", "--seed", "7",
+                  "--observer", "70-years", "--set", "tone.smoothing_s=1", "--set", "glare.age=60", "--set", "glare.age=65", "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("--set glare.age is given more than once"), std::string::npos);
     const auto report = outcome.json();
@@ -406,13 +413,15 @@ TEST_F(Simulate, AnObserverChangesWhatIsChosenAndNoMore) {
     const auto outcome = entoptic({"simulate", scene, "-o", path("observer.exr"), "--fov", "60", "--preset", "luidolt2020", "--observer", "tester"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_GT(mean(result("observer.exr")), 1.1f * mean(result("plain.exr")));
-    for (const auto& [line, said] : std::map<std::string, std::string>{{"tone.key_scale = \"much\"", "must be a number: 0.05 to 20."},
-                                                                       {"glare.age = \"70 years\"", "must be a number: 10 to 90 years."},
-                                                                       {"glare.agee = 70", "has a parameter 'agee'"},
-                                                                       {"glaree.age = 70", "no slot 'glaree'"},
-                                                                       {"glare.age = 840", "glare.age = 840 is out of range: 10 to 90 years."}}) {
+    for (const auto& [line, said] :
+         std::map<std::string, std::string>{{"tone.key_scale = \"much\"", "must be a number: 0.05 to 20."},
+                                            {"glare.age = \"70 years\"", "must be a number: 10 to 90 years."},
+                                            {"glare.agee = 70", "has a parameter 'agee'"},
+                                            {"glaree.age = 70", "no slot 'glaree'"},
+                                            {"glare.age = 840", "glare.age = 840 is out of range: 10 to 90 years."}}) {
         write("config/entoptic/observers/broken.toml", "[settings]\n" + line + "\n");
-        expect_error(2, "broken.toml:2: ", {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken", "--preset", "luidolt2020"});
+        expect_error(2, "broken.toml:2: ",
+                     {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken", "--preset", "luidolt2020"});
         expect_error(2, said, {"simulate", scene, "-o", path("out.exr"), "--fov", "60", "--observer", "broken", "--preset", "luidolt2020"});
     }
 }
@@ -453,7 +462,8 @@ TEST_F(Simulate, ObserversThatComeWithTheProgramAreTheirAge) {
         EXPECT_GT(seen({"--observer", name}).at(20, 32, 1), 1.02f * off.at(20, 32, 1)) << name;
     EXPECT_LE(seen({"--observer", "young"}).at(20, 32, 1), off.at(20, 32, 1));
     write("config/entoptic/observers/old.toml", "[settings]\nglare.age = 900\n");
-    expect_error(2, "old.toml:2: glare.age = 900 is out of range: 10 to 90 years", {"simulate", scene, "-o", path("out.exr"), "--fov", "30", "--observer", "old"});
+    expect_error(2, "old.toml:2: glare.age = 900 is out of range: 10 to 90 years",
+                 {"simulate", scene, "-o", path("out.exr"), "--fov", "30", "--observer", "old"});
 }
 
 }  // namespace

@@ -48,8 +48,8 @@ public:
         }
         ENTOPTIC_CHECK(write_trace());
         fmt::print("{}\n{}\n", pattern_, trace_);
-        fmt::print(stderr, "Look at it: entoptic simulate {} --fps {:g} --fov {:g} --trace {} -o seen_%04d.png --preset {}\n", pattern_, o_.fps,
-                   o_.fov_deg, trace_, entry_.preset);
+        fmt::print(stderr, "Look at it: entoptic simulate {} --fps {:g} --fov {:g} --trace {} -o seen_%04d.png --preset {}\n", pattern_,
+                   o_.fps, o_.fov_deg, trace_, entry_.preset);
         return {};
     }
 

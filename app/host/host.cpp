@@ -119,7 +119,8 @@ Result<void> Host::start(const ApplicationIdentity& application, const Config& c
     facts_.started = stopwatch_.now();
     facts_.application = application;
     facts_.config = config;
-    const auto selected = select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value, perception::Viewer::wearer);
+    const auto selected = select_effects(config.preset.value, config.model_names(), config.setting_texts(), config.observer.value,
+                                         perception::Viewer::wearer);
     if (!selected) return forward_error(with_origin(selected.error(), config));
     const perception::Selection& selection = *selected;
     facts_.selection = selection;

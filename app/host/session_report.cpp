@@ -88,7 +88,8 @@ Json effects_now_json(const SessionFacts& facts, const compositor::FrameOutcome&
     for (const perception::EffectOutcome& e : last.effects)
         if (chosen(e)) effects.push_back({{"slot", e.slot}, {"model", e.model}, {"on", e.recorded && !e.gated}, {"why", e.why}});
     const auto told = [&](std::string_view slot) {
-        return std::any_of(last.effects.begin(), last.effects.end(), [&](const perception::EffectOutcome& e) { return e.slot == slot && chosen(e); });
+        return std::any_of(last.effects.begin(), last.effects.end(),
+                           [&](const perception::EffectOutcome& e) { return e.slot == slot && chosen(e); });
     };
     for (const perception::Choice& choice : facts.selection.choices)
         if (!told(choice.entry->slot))

@@ -116,8 +116,10 @@ Result<std::vector<InputFile>> input_files(const std::string& name) {
     std::vector<InputFile> files;
     for (const int n : numbers_of(numbered, name)) {
         if (!files.empty() && n != files.back().number + 1)
-            return failure(fmt::format("'{}' is missing, though there are frames before it and after it. Make it, or take the later ones elsewhere: time must not jump.",
-                                       numbered.with(files.back().number + 1, 0)));
+            return failure(
+                fmt::format("'{}' is missing, though there are frames before it and after it. Make it, or take the later ones elsewhere: "
+                            "time must not jump.",
+                            numbered.with(files.back().number + 1, 0)));
         files.push_back({numbered.with(n, 0), n});
     }
     if (files.empty()) return failure(fmt::format("There is no file like '{}'. Check the folder and the number of digits.", name));
@@ -134,7 +136,8 @@ Result<EyeGeometry> scene_geometry(std::optional<Projection> projection, std::op
     g.width = static_cast<uint>(width);
     g.height = static_cast<uint>(height);
     if (projection == Projection::equirect && width != 2 * height)
-        return usage_error(fmt::format("--projection equirect shows the full sphere, twice as wide as high; this picture has {} x {} pixels.", width, height));
+        return usage_error(fmt::format(
+            "--projection equirect shows the full sphere, twice as wide as high; this picture has {} x {} pixels.", width, height));
     if (projection.value_or(fov_deg ? Projection::rectilinear : Projection::equirect) == Projection::equirect) {
         if (fov_deg) return usage_error("--fov does not go with --projection equirect, which always shows the full sphere.");
         g.kind = geometry_equirect;

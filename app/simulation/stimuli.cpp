@@ -164,13 +164,17 @@ const std::vector<StimulusEntry>& stimuli() {
     static const std::vector<StimulusEntry> table = {
         {"flash", "jacobs2015", "Jacobs 2015, figures 4 and 5", "A disc of --luminance for 1/8 s, then darkness", &flash},
         {"flash_series", "jacobs2015", "Jacobs 2015, figure 5", "Bars of 1e3 to 1e8 cd/m² for 1/8 s, then darkness", &flash_series},
-        {"brightness", "jacobs2015", "Jacobs 2015, section 4.1", "Two camera flashes of 50 ms, the second --test over 27 as bright", &brightness},
+        {"brightness", "jacobs2015", "Jacobs 2015, section 4.1", "Two camera flashes of 50 ms, the second --test over 27 as bright",
+         &brightness},
         {"hue", "jacobs2015", "Jacobs 2015, section 4.3", "A camera flash, bare or through --filter 4 or 32", &hue},
-        {"adaptation_grey", "jacobs2015", "Jacobs 2015, figure 3 (b, c)", "Dark and light quadrants for 8 s, then an even field", &adaptation_grey},
-        {"adaptation_colour", "jacobs2015", "Jacobs 2015, figure 3 (d)", "Coloured quadrants for 8 s, then an even field", &adaptation_colour},
+        {"adaptation_grey", "jacobs2015", "Jacobs 2015, figure 3 (b, c)", "Dark and light quadrants for 8 s, then an even field",
+         &adaptation_grey},
+        {"adaptation_colour", "jacobs2015", "Jacobs 2015, figure 3 (d)", "Coloured quadrants for 8 s, then an even field",
+         &adaptation_colour},
         {"lamp_and_page", "jacobs2015", "Jacobs 2015, figure 9", "A lamp is fixated, then a page: the gaze moves", &lamp_and_page},
         {"mesopic", "jacobs2015", "Jacobs 2015, section 4.2", "A colour chart in dim light twice, the second time at --test", &mesopic},
-        {"point_light", "kakimoto2004", "Kakimoto 2004, figure 5", "A disc of 0.15 degrees of --luminance in the dark, to see a glare model by", &point_light},
+        {"point_light", "kakimoto2004", "Kakimoto 2004, figure 5",
+         "A disc of 0.15 degrees of --luminance in the dark, to see a glare model by", &point_light},
         {"mesopic_levels", "jacobs2015", "Jacobs 2015, figure 11", "The colour chart from 10 down to 0.001 cd/m²", &mesopic_levels},
     };
     return table;

@@ -67,7 +67,8 @@ Result<std::optional<double>> value_of(const std::string& text, std::size_t colu
     const auto value = number_from(text);
     if (value && *value >= limit.low && *value <= limit.high) return value;
     if (limit.needed || (!value && !says_none(text)))
-        return wrong(at, fmt::format("{} is '{}'; wanted is a number from {:g} to {:g}.", column_names[column], text, limit.low, limit.high));
+        return wrong(at,
+                     fmt::format("{} is '{}'; wanted is a number from {:g} to {:g}.", column_names[column], text, limit.low, limit.high));
     return std::optional<double>();
 }
 
@@ -104,7 +105,8 @@ Result<Trace> Trace::read(const std::string& path) {
         if (!has(gaze_x_column)) values[gaze_x_column] = 0;
         if (!has(gaze_y_column)) values[gaze_y_column] = 0;
         Row row{*values[time_column], {}, values[pupil_column], values[blink_column].value_or(0) >= 0.5};
-        if (trace.has_gaze_ && values[gaze_x_column] && values[gaze_y_column]) row.gaze = GazeAngles(*values[gaze_x_column], *values[gaze_y_column]);
+        if (trace.has_gaze_ && values[gaze_x_column] && values[gaze_y_column])
+            row.gaze = GazeAngles(*values[gaze_x_column], *values[gaze_y_column]);
         if (!trace.rows_.empty() && row.time_s <= trace.rows_.back().time_s) return wrong(at, "time_s must grow from row to row.");
         trace.rows_.push_back(row);
     }
@@ -113,7 +115,8 @@ Result<Trace> Trace::read(const std::string& path) {
     if (trace.has_pupil_ && trace.without_pupil_ == trace.rows())
         return failure(fmt::format("{}: no row has a pupil_mm from 1.5 to 9 mm. Give diameters in mm, or leave the column out.", path));
     if (trace.has_gaze_ && trace.without_gaze_ == trace.rows())
-        return failure(fmt::format("{}: no row has a gaze within 180 degrees to the sides and 90 up and down. Give degrees, or leave the columns out.", path));
+        return failure(fmt::format(
+            "{}: no row has a gaze within 180 degrees to the sides and 90 up and down. Give degrees, or leave the columns out.", path));
     trace.leave_out_blinks();
     return trace;
 }

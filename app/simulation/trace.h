@@ -32,7 +32,7 @@ public:
     bool has_pupil() const { return has_pupil_; }
     bool has_blinks() const;
     std::size_t rows() const { return rows_.size(); }
-    std::size_t rows_without_gaze() const { return without_gaze_; }    // where there is a column of it
+    std::size_t rows_without_gaze() const { return without_gaze_; }  // where there is a column of it
     std::size_t rows_without_pupil() const { return without_pupil_; }
 
     // How long a lid takes from open to closed and back, s. choice: within what is seen of spontaneous blinks, which close faster than they
