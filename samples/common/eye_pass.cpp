@@ -129,6 +129,23 @@ EyePass::EyePass(const Gpu& gpu, const PassFormat& format, VkRenderPass render_p
     VkFence fence = VK_NULL_HANDLE;
     check_vk(vkCreateFence(gpu.device(), &fence_info, nullptr, &fence), "vkCreateFence");
     done_ = {gpu.device(), fence};
+    if (gpu.has_timestamps()) {
+        VkQueryPoolCreateInfo query_info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+        query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        query_info.queryCount = 2;
+        VkQueryPool times = VK_NULL_HANDLE;
+        check_vk(vkCreateQueryPool(gpu.device(), &query_info, nullptr, &times), "vkCreateQueryPool");
+        times_ = {gpu.device(), times};
+    }
+}
+
+std::optional<double> EyePass::milliseconds() const {
+    std::array<std::uint64_t, 2> ticks{};
+    if (times_.get() == VK_NULL_HANDLE || vkGetQueryPoolResults(gpu_->device(), times_.get(), 0, 2, sizeof(ticks), ticks.data(),
+                                                                sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
+        return std::nullopt;
+    }
+    return 1e-6 * static_cast<double>(gpu_->properties().limits.timestampPeriod) * static_cast<double>(ticks[1] - ticks[0]);
 }
 
 void EyePass::wait() const {
@@ -145,6 +162,10 @@ void EyePass::draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& are
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check_vk(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
 
+    if (times_.get() != VK_NULL_HANDLE) {
+        vkCmdResetQueryPool(commands_, times_.get(), 0, 2);
+        vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, times_.get(), 0);
+    }
     const VkClearValue black{.color = {.float32 = {0, 0, 0, 1}}};
     const VkClearValue far{.depthStencil = {1.0F, 0}};
     const std::array clears{black, format_.depth ? far : black, black};
@@ -160,6 +181,7 @@ void EyePass::draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& are
     vkCmdSetScissor(commands_, 0, 1, &pass.renderArea);
     record(commands_);
     vkCmdEndRenderPass(commands_);
+    if (times_.get() != VK_NULL_HANDLE) { vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, times_.get(), 1); }
 
     check_vk(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
     VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};

@@ -2,6 +2,7 @@
 // buffer and a fence. Knows nothing of OpenXR: the images may be a swapchain's or our own.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "samples/common/gpu.h"
@@ -34,6 +35,9 @@ public:
     // without waiting.
     void draw(std::uint32_t index, std::uint32_t depth, const VkRect2D& area, const std::function<void(VkCommandBuffer)>& record) const;
 
+    // GPU time of the picture that was drawn and waited for last, ms; none on devices without timestamps. Not to be called before draw().
+    std::optional<double> milliseconds() const;
+
     VkExtent2D extent() const { return extent_; }
     VkRect2D whole() const { return {{0, 0}, extent_}; }
 
@@ -48,6 +52,7 @@ private:
     std::vector<OwnedFramebuffer> framebuffers_;  // for each image, one for each kept depth image, or one
     VkCommandBuffer commands_ = VK_NULL_HANDLE;   // freed with the Gpu's command pool
     OwnedFence done_;
+    OwnedQueryPool times_;  // of begin and end; none on devices without timestamps
 };
 
 }  // namespace samples

@@ -65,6 +65,7 @@ void Gpu::create_device(const Factory& factory) {
         throw Failure(ExitCode::missing, fmt::format("{} cannot draw (no graphics queue)", properties_.deviceName));
     }
     queue_family_ = static_cast<std::uint32_t>(family - families.begin());
+    has_timestamps_ = family->timestampValidBits > 0;
 
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};

@@ -45,6 +45,7 @@ using OwnedImageView = Owned<VkImageView, vkDestroyImageView>;
 using OwnedBuffer = Owned<VkBuffer, vkDestroyBuffer>;
 using OwnedSampler = Owned<VkSampler, vkDestroySampler>;
 using OwnedFence = Owned<VkFence, vkDestroyFence>;
+using OwnedQueryPool = Owned<VkQueryPool, vkDestroyQueryPool>;
 using OwnedRenderPass = Owned<VkRenderPass, vkDestroyRenderPass>;
 using OwnedFramebuffer = Owned<VkFramebuffer, vkDestroyFramebuffer>;
 using OwnedPipeline = Owned<VkPipeline, vkDestroyPipeline>;
@@ -76,6 +77,7 @@ public:
     VkDevice device() const { return device_; }
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
+    bool has_timestamps() const { return has_timestamps_; }  // of its queue
     VkCommandPool command_pool() const { return command_pool_; }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
 
@@ -95,6 +97,7 @@ private:
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
+    bool has_timestamps_ = false;
     VkCommandPool command_pool_ = VK_NULL_HANDLE;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_properties_{};

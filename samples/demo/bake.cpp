@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "samples/demo/bvh.h"
+#include "samples/demo/detail.h"
 
 namespace samples {
 
@@ -444,13 +445,29 @@ private:
     std::vector<std::uint32_t> hits_;
 };
 
+// Light varies less than shape: patches of very many cells are lit, and throw shadows, as simpler ones. All but leaves stay as they are.
+Office simplified_for_light(Office office) {
+    constexpr int most_cells = 512;
+    for (Patch& patch : office.patches) {
+        DetailLevel level;
+        while (patch.columns * patch.rows / (level.column_step * level.row_step) > most_cells &&
+               patch.columns % (2 * level.column_step) == 0 && patch.rows % (2 * level.row_step) == 0) {
+            level.column_step *= 2;
+            level.row_step *= 2;
+        }
+        if (level.column_step > 1) { patch = reduced(patch, level); }
+    }
+    return office;
+}
+
 float luminance_of(glm::vec3 rgb) { return glm::dot(rgb, glm::vec3(0.2126F, 0.7152F, 0.0722F)); }
 
 }  // namespace
 
 float cavity_gain(float albedo, float opening_area, float wall_area) { return 1.0F / (1.0F - albedo * (1.0F - opening_area / wall_area)); }
 
-Lightmap bake(const Office& office, const std::vector<Canvas>& materials) {
+Lightmap bake(const Office& whole, const std::vector<Canvas>& materials) {
+    const Office office = simplified_for_light(whole);
     const Bvh bvh(office.patches);
     Lightmap map = lay_out(office.patches);
     const std::vector<Texel> texels = list_texels(map);

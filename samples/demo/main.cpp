@@ -1,4 +1,5 @@
 // entoptic-demo: a low-light office with a desk lamp, as in the user study of Luidolt et al. 2020, in cd/m².
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -27,6 +28,9 @@ struct Options {
     std::uint64_t frames = 0;
     double seconds = 0;
     std::string samples;  // empty: by the device
+    std::string detail = "full";
+    bool measure = false;
+    int plants = 0;
     bool no_extension = false;
     OffscreenOptions offscreen;
 };
@@ -58,6 +62,14 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
                    "samples a pixel, 1 or 4, or gaze: 4 only where the eye can see them, by XR_ENTOPTICX_observer (default: 4 on a GPU, 1 "
                    "on a software renderer)")
         ->check(CLI::IsMember({"1", "4", "gaze"}));
+    app.add_option("--detail", options.detail,
+                   "full, or gaze: objects as coarse as the eye cannot tell from the whole, where XR_ENTOPTICX_observer says that it looks")
+        ->check(CLI::IsMember({"full", "gaze"}))
+        ->capture_default_str();
+    app.add_option("--plants", options.plants, "potted plants of 147 000 triangles each")
+        ->check(CLI::Range(0, most_plants))
+        ->capture_default_str();
+    app.add_flag("--measure", options.measure, "draw each picture in full detail too, and print triangles and GPU times of both");
     app.add_flag("--no-extension", options.no_extension, "leave XR_ENTOPTICX_scene_luminance out");
     auto* folder = app.add_option("--offscreen", options.offscreen.folder, "no OpenXR: write DIR/left.exr and DIR/right.exr in cd/m2");
     app.add_option("--size", size, "pixels of an eye, WxH")->needs(folder)->capture_default_str();
@@ -67,6 +79,11 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
         ->capture_default_str();
     app.add_option("--yaw", options.offscreen.yaw_degrees, "head turned right, degrees")->needs(folder);
     app.add_option("--pitch", options.offscreen.pitch_degrees, "head tilted up, degrees")->needs(folder);
+    app.add_option("--gaze", options.offscreen.gaze_degrees, "X,Y: where both eyes look, degrees right and up of the view's centre")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(-180.0, 180.0))
+        ->needs(folder);
     app.add_option("--at", options.at_seconds, "time of the script or cycle to show, s")->needs(folder);
     app.add_option("--offscreen-png", options.offscreen.png_white_cd_m2, "write PNGs too, with this luminance in cd/m2 as white")
         ->needs(folder)
@@ -77,6 +94,10 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
     try {
         app.parse(argc, argv);
         options.offscreen.size = parse_size(size);
+        options.offscreen.whole_too = options.measure;
+        if (options.measure && options.samples == "gaze") {
+            throw CLI::ValidationError("--measure", "does not go with --samples gaze, which draws in two passes");
+        }
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? static_cast<int>(ExitCode::done) : static_cast<int>(ExitCode::usage);
     }
@@ -101,7 +122,8 @@ LightControl make_control(const Options& options) {
 
 class Demo : public Scene {
 public:
-    Demo(const Options& options, LightControl control) : options_(options), control_(std::move(control)), office_(build_office()) {}
+    Demo(const Options& options, LightControl control)
+        : options_(options), control_(std::move(control)), office_(build_office(options.plants)) {}
 
     // Bakes the light and uploads the office.
     void load(const Gpu& gpu, bool keep_depth) {
@@ -112,7 +134,9 @@ public:
         const auto painted = clock::now();
         const Lightmap lightmap = bake(office_, materials);
         const auto baked = clock::now();
-        renderer_ = std::make_unique<OfficeRenderer>(gpu, office_, materials, lightmap, sampling(gpu), options_.lamp_cd_m2, keep_depth);
+        const DrawOptions draw{sampling(gpu), options_.detail == "gaze" ? Detail::gaze : Detail::full, options_.measure,
+                               options_.lamp_cd_m2, keep_depth};
+        renderer_ = std::make_unique<OfficeRenderer>(gpu, office_, materials, lightmap, draw);
         fmt::print(stderr, "office ready: textures {:.2f} s, light {:.2f} s ({} x {} texels), upload {:.2f} s, on {}\n",
                    seconds(painted - start), seconds(baked - painted), lightmap.width, lightmap.height, seconds(clock::now() - baked),
                    gpu.properties().deviceName);
@@ -171,12 +195,30 @@ private:
     float unit_ = 1;
 };
 
+std::string in_words(const DrawCost& cost) {
+    const double pictures = static_cast<double>(cost.pictures);
+    std::string text = fmt::format("{:.0f} triangles", cost.triangles / pictures);
+    std::vector<double> times = cost.milliseconds;
+    if (times.empty()) { return text; }
+    std::sort(times.begin(), times.end());
+    return text + fmt::format(", GPU {:.2f} ms (median; fastest {:.2f})", times[times.size() / 2], times.front());
+}
+
+// What the picture of an eye cost, in the mean.
+void print_cost(const OfficeRenderer& renderer) {
+    if (renderer.cost().pictures == 0) { return; }
+    fmt::print(
+        stderr, "drawn, a picture of an eye: {} (in full detail {})\n", in_words(renderer.cost()),
+        renderer.whole_cost().pictures > 0 ? in_words(renderer.whole_cost()) : fmt::format("{} triangles", renderer.whole_triangles()));
+}
+
 int run_offscreen(const Options& options) {
     const auto gpu = Gpu::standalone("Entoptic demo");
     Demo demo(options, make_control(options));
     if (options.light == "cycle" || !options.script.empty()) { demo.control().update({options.at_seconds, 0}, {}); }
     demo.load(*gpu, true);
     render_offscreen(*gpu, demo.renderer(), demo.control().light(), options.offscreen);
+    if (options.detail == "gaze" || options.measure) { print_cost(demo.renderer()); }
     return static_cast<int>(ExitCode::done);
 }
 
@@ -186,7 +228,7 @@ int run_openxr(const Options& options) {
     app_options.application = "Entoptic demo";
     app_options.formats = {OfficeRenderer::format};
     app_options.scene_luminance = !options.no_extension;
-    app_options.gaze = options.samples == "gaze";
+    app_options.gaze = options.samples == "gaze" || options.detail == "gaze";
     app_options.controllers = true;
     app_options.near_m = OfficeRenderer::near_plane;
     app_options.far_m = OfficeRenderer::far_plane;
@@ -198,6 +240,7 @@ int run_openxr(const Options& options) {
     std::signal(SIGINT, [](int) { XrApp::request_end(); });
     std::signal(SIGTERM, [](int) { XrApp::request_end(); });
     app.run(demo);
+    if (options.detail == "gaze" || options.measure) { print_cost(demo.renderer()); }
     if (options.samples == "gaze") {
         fmt::print(stderr, "four samples in {:.1f} % of all pixels: where an eye could have seen the difference\n",
                    100 * demo.renderer().finely_sampled_share());

@@ -1,5 +1,7 @@
 #include "samples/demo/office.h"
 
+#include "samples/demo/plants.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -459,6 +461,27 @@ void add_lamp(Builder& b) {
     b.office.bulb_radius = bulb_radius;
 }
 
+// A pot with its plant, standing on `base`.
+void add_plant(Builder& b, glm::vec3 base, std::uint32_t seed) {
+    const Finish clay{Material::plain, srgb(0xA0522D), 60};
+    const glm::mat4 place = Builder::placed(base);
+    b.lathe(place, {{0.045F, 0}, {0.065F, 0.09F}, {0.068F, 0.09F}, {0.068F, 0.105F}, {0.060F, 0.105F}}, 24, clay);
+    b.lathe(place, {{0.060F, 0.105F}, {0.058F, 0.095F}, {1e-4F, 0.095F}}, 24, {Material::plain, glm::vec3(0.04F, 0.03F, 0.02F), 60});
+    for (Patch& leaf : plant_leaves(base + glm::vec3(0, 0.09F, 0), seed)) { b.office.patches.push_back(std::move(leaf)); }
+}
+
+void add_plants(Builder& b, int count) {
+    constexpr float sill = room_right - 0.085F;
+    const std::array<glm::vec3, most_plants> places{{{sill, window_bottom, -1.40F},
+                                                     {sill, window_bottom, -0.95F},
+                                                     {sill, window_bottom, -1.95F},
+                                                     {room_left + 0.22F, 0.85F, -1.75F},
+                                                     {0.78F, desk_top, -0.95F}}};
+    for (int i = 0; i < std::clamp(count, 0, most_plants); ++i) {
+        add_plant(b, places[static_cast<std::size_t>(i)], 300U + static_cast<std::uint32_t>(i));
+    }
+}
+
 void lower_to_eye(Office& office) {
     const glm::vec3 down(0, -eye_height, 0);
     for (Patch& patch : office.patches) {
@@ -484,7 +507,7 @@ SurfacePoint evaluate(const Patch& patch, float s, float t) {
     return {at(patch.positions), glm::normalize(at(patch.normals))};
 }
 
-Office build_office() {
+Office build_office(int plants) {
     Builder b;
     add_lamp(b);
     add_mug(b);
@@ -506,6 +529,7 @@ Office build_office() {
     add_outdoors(b);
     add_moon(b);
     add_stars(b);
+    add_plants(b, plants);
     lower_to_eye(b.office);
     return std::move(b.office);
 }

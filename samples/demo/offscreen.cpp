@@ -25,6 +25,11 @@ static EyeView eye_view(const OffscreenOptions& options, int eye) {
     view.tan_left = -view.tan_right;
     view.tan_up = view.tan_right * static_cast<float>(options.size.height) / static_cast<float>(options.size.width);
     view.tan_down = -view.tan_up;
+    if (options.gaze_degrees.size() == 2) {
+        const double right = glm::radians(options.gaze_degrees[0]), up = glm::radians(options.gaze_degrees[1]);
+        const glm::vec3 gaze(std::sin(right) * std::cos(up), std::sin(up), -std::cos(right) * std::cos(up));
+        view.seen = {gaze, daylight_resolved_angle, daylight_eccentricity_factor};
+    }
     return view;
 }
 
@@ -67,10 +72,14 @@ static void print_statistics(const char* name, const Picture& picture) {
                sum / static_cast<double>(luminances.size()), *high);
 }
 
-void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& light, const OffscreenOptions& options) {
+static void make_folder(const std::string& folder) {
     std::error_code error;
-    std::filesystem::create_directories(options.folder, error);
-    if (error) { throw Failure(ExitCode::failed, fmt::format("cannot make the folder {}: {}", options.folder, error.message())); }
+    std::filesystem::create_directories(folder, error);
+    if (error) { throw Failure(ExitCode::failed, fmt::format("cannot make the folder {}: {}", folder, error.message())); }
+}
+
+void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& light, const OffscreenOptions& options) {
+    make_folder(options.folder);
     std::vector<Image> images, depths;
     for (int eye = 0; eye < 2; ++eye) {
         images.push_back(create_image(gpu, {.format = OfficeRenderer::format,
@@ -93,15 +102,23 @@ void render_offscreen(const Gpu& gpu, OfficeRenderer& renderer, const Light& lig
     std::sort(times_ms.begin(), times_ms.end());
     fmt::print("both eyes in {:.1f} ms (median of {}, fastest {:.1f}); {} cd/m2 per unit of fp16\n", times_ms[times_ms.size() / 2],
                times_ms.size(), times_ms.front(), unit);
-    for (int eye = 0; eye < 2; ++eye) {
-        const char* name = eye == 0 ? "left" : "right";
-        Picture picture = picture_of(gpu, images[static_cast<std::size_t>(eye)], unit);
-        picture.distances = distances(gpu, depths[static_cast<std::size_t>(eye)], eye_view(options, eye));
-        print_statistics(name, picture);
-        const std::string base = options.folder + "/" + name;
-        write_radiance_map(base + ".exr", picture, 1.0F);
-        if (options.png_white_cd_m2 > 0) { write_preview(base + ".png", picture, static_cast<float>(options.png_white_cd_m2)); }
-    }
+    const auto write = [&](const std::string& folder) {
+        for (int eye = 0; eye < 2; ++eye) {
+            const char* name = eye == 0 ? "left" : "right";
+            Picture picture = picture_of(gpu, images[static_cast<std::size_t>(eye)], unit);
+            picture.distances = distances(gpu, depths[static_cast<std::size_t>(eye)], eye_view(options, eye));
+            print_statistics(name, picture);
+            const std::string base = folder + "/" + name;
+            write_radiance_map(base + ".exr", picture, 1.0F);
+            if (options.png_white_cd_m2 > 0) { write_preview(base + ".png", picture, static_cast<float>(options.png_white_cd_m2)); }
+        }
+    };
+    write(options.folder);
+    if (!options.whole_too) { return; }
+    for (int eye = 0; eye < 2; ++eye) { renderer.draw_whole(static_cast<std::uint32_t>(eye), 0, 0, eye_view(options, eye)); }
+    renderer.wait();
+    make_folder(options.folder + "/whole");
+    write(options.folder + "/whole");
 }
 
 }  // namespace samples

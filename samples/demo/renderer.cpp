@@ -69,9 +69,7 @@ glm::vec2 lightmap_coordinates(const LightmapBlock& block, const Lightmap& map, 
 }
 
 // `emits`: as an emitter, else as a surface. The tint is a surface's albedo, and the colour of an emitter that is no surface.
-void append_patch(const Patch& patch, bool emits, const LightmapBlock& block, const Lightmap& map, std::vector<Vertex>& vertices,
-                  std::vector<std::uint32_t>& indices) {
-    const auto first = static_cast<std::uint32_t>(vertices.size());
+void append_vertices(const Patch& patch, bool emits, const LightmapBlock& block, const Lightmap& map, std::vector<Vertex>& vertices) {
     const auto columns = static_cast<std::uint32_t>(patch.columns), rows = static_cast<std::uint32_t>(patch.rows);
     for (std::uint32_t row = 0; row <= rows; ++row) {
         for (std::uint32_t column = 0; column <= columns; ++column) {
@@ -82,13 +80,10 @@ void append_patch(const Patch& patch, bool emits, const LightmapBlock& block, co
                                 packed_tint(emits && reflects(patch.emitter) ? glm::vec3(1) : patch.tint)});
         }
     }
-    for (std::uint32_t row = 0; row < rows; ++row) {
-        for (std::uint32_t column = 0; column < columns; ++column) {
-            const std::uint32_t at = first + row * (columns + 1) + column, above = at + columns + 1;
-            for (const std::uint32_t index : {at, at + 1, above + 1, at, above + 1, above}) { indices.push_back(index); }
-        }
-    }
 }
+
+// Lamps are drawn twice, as surfaces and as lights, which must be the same; small patches have nothing to save.
+bool has_levels(const Patch& patch) { return patch.emitter == Emitter::none && patch.columns * patch.rows >= 64; }
 
 }  // namespace
 
@@ -139,8 +134,8 @@ VkRect2D finely_seen(const EyeView& view, VkExtent2D extent) {
 }
 
 OfficeRenderer::OfficeRenderer(const Gpu& gpu, const Office& office, const std::vector<Canvas>& materials, const Lightmap& lightmap,
-                               Sampling samples, double lamp_peak_cd_m2, bool keep_depth)
-    : gpu_(gpu), lamp_peak_cd_m2_(lamp_peak_cd_m2), bulb_centre_(office.bulb_centre) {
+                               const DrawOptions& options)
+    : gpu_(gpu), options_(options), bulb_centre_(office.bulb_centre) {
     for (const glm::vec4& lux : lightmap.texels) { largest_illuminance_ = glm::max(largest_illuminance_, lux); }
     for (const Patch& patch : office.patches) {
         brightest_star_ = patch.emitter == Emitter::stars ? std::max(brightest_star_, patch.emission) : brightest_star_;
@@ -148,8 +143,9 @@ OfficeRenderer::OfficeRenderer(const Gpu& gpu, const Office& office, const std::
     upload_mesh(office, lightmap);
     upload_textures(materials, lightmap);
     create_layout();
-    style_ = create_style({format, samples == Sampling::four ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT, true, keep_depth, false});
-    if (samples == Sampling::gaze) { fine_style_ = create_style({format, VK_SAMPLE_COUNT_4_BIT, true, keep_depth, true}); }
+    const bool four = options.samples == Sampling::four;
+    style_ = create_style({format, four ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT, true, options.keep_depth, false});
+    if (options.samples == Sampling::gaze) { fine_style_ = create_style({format, VK_SAMPLE_COUNT_4_BIT, true, options.keep_depth, true}); }
 }
 
 void OfficeRenderer::upload_mesh(const Office& office, const Lightmap& lightmap) {
@@ -163,12 +159,44 @@ void OfficeRenderer::upload_mesh(const Office& office, const Lightmap& lightmap)
     }
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
+    // The triangles of a level of a patch whose vertices begin at `first`.
+    const auto append = [&](const Patch& patch, const DetailLevel& level, std::uint32_t first) {
+        const auto start = static_cast<std::uint32_t>(indices.size());
+        for (const std::uint32_t index : triangles_of(patch, level)) { indices.push_back(first + index); }
+        return Range{start, static_cast<std::uint32_t>(indices.size()) - start};
+    };
     for (const auto& [key, members] : groups) {
-        const auto first = static_cast<std::uint32_t>(indices.size());
+        Batch batch{std::get<1>(key),
+                    std::get<2>(key),
+                    {static_cast<std::uint32_t>(indices.size()), 0},
+                    {static_cast<std::uint32_t>(parts_.size()), 0},
+                    0};
+        std::vector<std::pair<const Patch*, std::uint32_t>> in_parts;  // with their first vertices
+        std::size_t most_levels = 1;
         for (const std::size_t i : members) {
-            append_patch(office.patches[i], std::get<1>(key) != Emitter::none, lightmap.blocks[i], lightmap, vertices, indices);
+            const Patch& patch = office.patches[i];
+            const auto first = static_cast<std::uint32_t>(vertices.size());
+            append_vertices(patch, batch.emitter != Emitter::none, lightmap.blocks[i], lightmap, vertices);
+            if (has_levels(patch)) {
+                parts_.push_back({detail_levels(patch), {}, cover_of(patch)});
+                in_parts.emplace_back(&patch, first);
+                most_levels = std::max(most_levels, parts_.back().levels.size());
+            } else {
+                batch.fixed.count += append(patch, {}, first).count;
+            }
         }
-        batches_.push_back({std::get<1>(key), std::get<2>(key), first, static_cast<std::uint32_t>(indices.size()) - first});
+        batch.parts.count = static_cast<std::uint32_t>(in_parts.size());
+        for (std::size_t level = 0; level < most_levels; ++level) {  // level by level, so that neighbours of one level are one range
+            for (std::size_t i = 0; i < in_parts.size(); ++i) {
+                Part& part = parts_[batch.parts.first + i];
+                if (level < part.levels.size()) {
+                    part.ranges.push_back(append(*in_parts[i].first, part.levels[level], in_parts[i].second));
+                }
+            }
+            if (level == 0) { batch.whole = static_cast<std::uint32_t>(indices.size()) - batch.fixed.first; }
+        }
+        whole_triangles_ += batch.whole / 3;
+        batches_.push_back(batch);
     }
     vertices_ = create_buffer_from(gpu_, std::as_bytes(std::span(vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     indices_ = create_buffer_from(gpu_, std::as_bytes(std::span(indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
@@ -247,7 +275,7 @@ void OfficeRenderer::add_eye(VkExtent2D extent, const std::vector<VkImage>& imag
     const auto pass = [&](const Style& style) {
         return EyePass(gpu_, style.format, style.render_pass.get(), extent, images, depth_images);
     };
-    eyes_.push_back({pass(style_), std::nullopt, std::move(uniforms), set});
+    eyes_.push_back({pass(style_), std::nullopt, std::move(uniforms), set, {}});
     if (fine_style_) { eyes_.back().fine.emplace(pass(*fine_style_)); }
 }
 
@@ -258,14 +286,14 @@ void OfficeRenderer::set_light(const Light& light, float unit_cd_m2) {
 
 // Radiance of an emitter as linear RGB in cd/m².
 glm::vec3 OfficeRenderer::emitted(Emitter emitter, const Light& light) const {
-    const auto colours = channel_colours(light, lamp_peak_cd_m2_);
+    const auto colours = channel_colours(light, options_.lamp_peak_cd_m2);
     switch (emitter) {
         case Emitter::outdoors:
             return colours[light_sky];
         case Emitter::ceiling_panel:
             return colours[light_ceiling];
         case Emitter::bulb:
-            return blackbody(2700) * static_cast<float>(lamp_peak_cd_m2_ * light.lamp);
+            return blackbody(2700) * static_cast<float>(options_.lamp_peak_cd_m2 * light.lamp);
         case Emitter::moon:
             return blackbody(4100) * static_cast<float>(moon_cd_m2 * light.moon);
         case Emitter::power_led:
@@ -287,7 +315,7 @@ double OfficeRenderer::brightest(const Light& light) const {
     }
     bound = std::max(bound, double{brightest_star_} + largest(emitted(Emitter::outdoors, light)));
     bound = std::max(bound, largest(emitted(Emitter::moon, light) + emitted(Emitter::outdoors, light)));
-    const auto colours = channel_colours(light, lamp_peak_cd_m2_);
+    const auto colours = channel_colours(light, options_.lamp_peak_cd_m2);
     double reflected = 0;  // by a white surface where each light is strongest
     for (int i = 0; i < 4; ++i) { reflected += largest(colours[static_cast<std::size_t>(i)]) * largest_illuminance_[i] / std::numbers::pi; }
     return std::max(bound, reflected);
@@ -295,20 +323,71 @@ double OfficeRenderer::brightest(const Light& light) const {
 
 static double pixel_count(VkExtent2D extent) { return static_cast<double>(extent.width) * static_cast<double>(extent.height); }
 
-void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
-    const Eye& eye = eyes_.at(index);
+template <class Draw> void OfficeRenderer::for_ranges(const Batch& batch, const Levels& levels, const Draw& draw) const {
+    if (levels.empty()) { return draw(Range{batch.fixed.first, batch.whole}); }
+    Range joined = batch.fixed;
+    for (std::uint32_t i = batch.parts.first; i < batch.parts.first + batch.parts.count; ++i) {
+        const Range range = parts_[i].ranges[levels[i]];
+        if (range.first != joined.first + joined.count) {
+            if (joined.count > 0) { draw(joined); }
+            joined = {range.first, 0};
+        }
+        joined.count += range.count;
+    }
+    if (joined.count > 0) { draw(joined); }
+}
+
+void OfficeRenderer::set_view(const Eye& eye, const EyeView& view) const {
     eye.pass.wait();  // before its uniforms change
     if (eye.fine) { eye.fine->wait(); }
     ViewUniforms uniforms{};
     uniforms.clip_from_world = clip_from_world(view);
-    const auto colours = channel_colours(light_, lamp_peak_cd_m2_);
+    const auto colours = channel_colours(light_, options_.lamp_peak_cd_m2);
     for (std::size_t i = 0; i < colours.size(); ++i) {
         uniforms.channel_radiance[i] = glm::vec4(colours[i] / (std::numbers::pi_v<float> * unit_), 0);
     }
     uniforms.eye = glm::vec4(view.position, 1);
     std::memcpy(eye.uniforms.mapped, &uniforms, sizeof(uniforms));
+}
+
+void OfficeRenderer::choose_levels(Eye& eye, const EyeView& view) const {
+    eye.levels.resize(parts_.size(), 0);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        eye.levels[i] = choose_level(parts_[i].levels, unseen_deviation(view, parts_[i].cover), eye.levels[i]);
+    }
+}
+
+std::uint64_t OfficeRenderer::triangles(const Levels& levels) const {
+    std::uint64_t indices = 0;
+    for (const Batch& batch : batches_) {
+        for_ranges(batch, levels, [&](Range range) { indices += range.count; });
+    }
+    return indices / 3;
+}
+
+void OfficeRenderer::draw_pass(Eye& eye, std::uint32_t image, std::uint32_t depth, const Levels& levels, DrawCost* cost) {
+    eye.pass.draw(image, depth, eye.pass.whole(), [&](VkCommandBuffer commands) { record(commands, style_, eye, levels); });
+    if (cost == nullptr) { return; }
+    ++cost->pictures;
+    cost->triangles += static_cast<double>(triangles(levels));
+    if (!options_.measure) { return; }
+    eye.pass.wait();
+    if (const auto ms = eye.pass.milliseconds()) { cost->milliseconds.push_back(*ms); }
+}
+
+void OfficeRenderer::draw_whole(std::uint32_t index, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
+    Eye& eye = eyes_.at(index);
+    set_view(eye, view);
+    draw_pass(eye, image, depth, {}, nullptr);
+}
+
+void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_t depth, const EyeView& view) {
+    Eye& eye = eyes_.at(index);
+    set_view(eye, view);
+    if (options_.measure) { draw_pass(eye, image, depth, {}, &whole_cost_); }
+    if (options_.detail == Detail::gaze) { choose_levels(eye, view); }
+    draw_pass(eye, image, depth, eye.levels, &cost_);
     const VkExtent2D extent = eye.pass.extent();
-    eye.pass.draw(image, depth, eye.pass.whole(), [&](VkCommandBuffer commands) { record(commands, style_, eye); });
     const double pixels = pixel_count(extent);
     pixels_ += pixels;
     if (style_.format.samples == VK_SAMPLE_COUNT_4_BIT) { fine_pixels_ += pixels; }
@@ -316,10 +395,10 @@ void OfficeRenderer::draw(std::uint32_t index, std::uint32_t image, std::uint32_
     const VkRect2D area = finely_seen(view, extent);
     if (area.extent.width == 0 || area.extent.height == 0) { return; }
     fine_pixels_ += pixel_count(area.extent);
-    eye.fine->draw(image, depth, area, [&](VkCommandBuffer commands) { record(commands, *fine_style_, eye); });
+    eye.fine->draw(image, depth, area, [&](VkCommandBuffer commands) { record(commands, *fine_style_, eye, eye.levels); });
 }
 
-void OfficeRenderer::record(VkCommandBuffer commands, const Style& style, const Eye& eye) const {
+void OfficeRenderer::record(VkCommandBuffer commands, const Style& style, const Eye& eye, const Levels& levels) const {
     const VkBuffer vertex_buffer = vertices_.buffer.get();
     const VkDeviceSize offset = 0;
     vkCmdBindVertexBuffers(commands, 0, 1, &vertex_buffer, &offset);
@@ -343,7 +422,7 @@ void OfficeRenderer::record(VkCommandBuffer commands, const Style& style, const 
         }
         const VkDescriptorSet set = material_sets_[static_cast<std::size_t>(batch.material)];
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_layout_.get(), 1, 1, &set, 0, nullptr);
-        vkCmdDrawIndexed(commands, batch.index_count, 1, batch.first_index, 0, 0);
+        for_ranges(batch, levels, [&](Range range) { vkCmdDrawIndexed(commands, range.count, 1, range.first, 0, 0); });
     }
 }
 
