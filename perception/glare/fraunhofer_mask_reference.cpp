@@ -55,9 +55,9 @@ ImageD point_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture,
     const auto blades = static_cast<int>(std::lround(p.blades)), directions = static_cast<int>(std::lround(p.filter_directions));
     const LidEdges lids = lid_edges(open);
     const auto passes = [&](double x, double y) -> double {
-        const double r = std::sqrt(x * x + y * y), radius = pupil_mm / 2;
+        const double radius = pupil_mm / 2, r = std::sqrt(x * x + y * y);
         if (r > radius) return 0;
-        if (blades >= 3) {
+        if (blades >= 3 && r > radius * std::cos(pi / blades)) {
             const double sector = 2 * pi / blades, turned = std::atan2(y, x) - static_cast<double>(p.blade_rotation_deg) * pi / 180;
             const double within = turned - sector * std::floor(turned / sector) - sector / 2;
             if (r * std::cos(within) > radius * std::cos(sector / 2)) return 0;
@@ -78,13 +78,18 @@ ImageD point_aperture(const FraunhoferMaskParams& p, const MaskPicture* picture,
     };
     const std::vector<std::uint8_t> dark = lash_shadows(p, pupil_mm, open, shift_mm, n);
     ImageD mean(samples, samples, 2);
+    const double part = 1.0 / (points * points);
     for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            if (dark[static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] != 0) continue;
-            const double t = passes(mm(i), -mm(j));
-            if (t == 0) continue;
-            mean.at(i / points, j / points, 0) += t / (points * points);
-            mean.at(i / points, j / points, 1) += t * t / (points * points);
+        for (int sample = 0, first = 0; sample < samples; ++sample, first += points) {
+            double sum = 0, squares = 0;
+            for (int i = first; i < first + points; ++i)
+                if (dark[static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] == 0) {
+                    const double t = passes(mm(i), -mm(j));
+                    sum += t;
+                    squares += t * t;
+                }
+            mean.at(sample, j / points, 0) += sum * part;
+            mean.at(sample, j / points, 1) += squares * part;
         }
     return mean;
 }
