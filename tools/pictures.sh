@@ -121,7 +121,7 @@ case "$wanted" in
         letter=$1
         shift
         "$programs/entoptic" simulate "$work/point_0000.exr" -o "$output/kakimoto_figure5_$letter.png" --fov 14 --preset kakimoto2004 --set glare.wavelengths=16 \
-            --set glare.three_lines=0 --set glare.texel_px=1 "$@" >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
+            --set glare.three_lines=0 --set glare.texel_px=1 --set glare.near_px=24 "$@" >/dev/null 2>"$work/log" || { cat "$work/log"; exit 1; }
         echo "  $output/kakimoto_figure5_$letter.png"
     }
     open="--set glare.lids=0 --set glare.lashes=0"
