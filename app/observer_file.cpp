@@ -61,7 +61,7 @@ Result<std::vector<PersonSetting>> settings_of(const std::string& path, const to
     std::vector<PersonSetting> out;
     for (const auto& [name, node] : table) {
         if (name == "description" && node.is_string()) continue;
-        if (name == "gaze" || name == "pupil") continue;  // observer_calibration.h
+        if (name == "gaze" || name == "pupil") continue;  // add_measured_pupils(), and observer_calibration.h
         const auto* slots = node.as_table();
         if (name != "settings" || !slots)
             return wrong(path, node, fmt::format("there is no key '{}' of this type. There are: description, [settings], [gaze], [pupil].", name.str()));
@@ -77,9 +77,24 @@ Result<std::vector<PersonSetting>> settings_of(const std::string& path, const to
     return out;
 }
 
+// What `entoptic calibrate pupil` measured in front of a white and of a black display is what luidolt_pupil asks for, unless the file says
+// otherwise. observer_calibration.h refuses what cannot be.
+void add_measured_pupils(const toml::table& table, std::vector<PersonSetting>& person) {
+    for (const auto& [measured, parameter] : {std::pair{"narrowest_mm", "white_mm"}, std::pair{"widest_mm", "black_mm"}}) {
+        const auto mm = table["pupil"][measured].value<double>();
+        const ParameterList known = parameters_named("pupil", parameter);
+        const bool said =
+            std::any_of(person.begin(), person.end(), [&](const auto& s) { return s.slot == "pupil" && s.parameter == parameter; });
+        if (!said && mm && !known.empty() && known[0]->allows(*mm)) person.push_back({"pupil", parameter, *mm});
+    }
+}
+
 Result<std::vector<PersonSetting>> parse_observer(const std::string& text, const std::string& path) {
     try {
-        return settings_of(path, toml::parse(text, path));
+        const toml::table table = toml::parse(text, path);
+        ENTOPTIC_TRY(person, settings_of(path, table));
+        add_measured_pupils(table, person);
+        return person;
     } catch (const toml::parse_error& e) {
         return usage_error(fmt::format("{}:{}: {}.", path, e.source().begin.line, e.description()));
     }

@@ -204,6 +204,10 @@ TEST_F(Simulate, ATraceMovesGazeAndPupil) {
         ASSERT_EQ(mapped.status, 0) << mapped.err;
         EXPECT_NEAR(mapped.json()["pictures"][0]["pupil_mm"].get<double>(), 2 + 6 * 0.5 / 3.5, 1e-5) << way;
     }
+    write("config/entoptic/observers/measured.toml", "[pupil]\nnarrowest_mm = 3.0\nwidest_mm = 5.0\n");
+    const auto own = entoptic({"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--pupil", "4", "--preset", "off",
+                               "--model", "pupil=luidolt_pupil", "--observer", "measured", "--json"});
+    EXPECT_NEAR(own.json()["pictures"][0]["pupil_mm"].get<double>(), 5, 1e-5) << own.err;
     write("bad.csv", "time_s,pupil_mm\n0,3\n1,wide\n");
     expect_error(1, "bad.csv:3", {"simulate", path("a.exr"), "-o", path("out.exr"), "--fov", "60", "--trace", path("bad.csv")});
     write("bad.csv", "time_s,pupil_mm\n0,3000\n1,3100\n");
