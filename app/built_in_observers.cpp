@@ -27,6 +27,8 @@ pupil.age = 65
 [settings]
 glare.age = 45
 glare.pigment = 1.2         # CIE 146:2002: light blue
+glare.straylight_colour = 0 # choice: white; light eyes add red light to the straylight of brown ones (Coppens 2006), but at one luminance their
+                            # difference would take blue away
 pupil.age = 45
 )"},
     };
