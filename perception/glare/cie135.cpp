@@ -17,7 +17,7 @@ constexpr ParameterInfo parameters[] = {
     {"pigment", "1", 0, 1.2f, 0.5f, "CIE 135/1-1999, eq. 8", "of the iris: 0 very dark, 0.5 brown, 1 green, 1.2 light blue"},
     {"angle_scale", "1", 1, 17.5f, 1, "choice: for pictures", "enlarges the kernel"},
     {"texel_px", "px", 1, 16, 4, "choice: error in the ledger", "least width of a texel of the grid on which wide glare is computed"},
-    {"near_px", "px", 0, 8, 8, "choice: error in the ledger", "radius of the near field, done at full resolution"},
+    {"near_px", "px", 0, 16, 15, "choice: the least whose seam with the grid cannot be seen (docs/speed_against_error.md)", "radius of the near field, done at full resolution"},
     {"near_from", "1", 0, 1e6f, 16, "choice: dimmer light has hardly a halo of its own", "photographic: light above this many times the adaptation luminance has a near field; 0: all light"},
     {"rescatter", "1", 0, 1, 1, "choice: 1 is the law that the wearer's own eye is not simulated", "share of the wearer's own scatter of the drawn halo that is taken away"},
     {"photographic", "bool", 0, 1, 0, "choice", "1: the whole scene is scattered; 0: only what the panel cannot send"},

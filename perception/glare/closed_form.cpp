@@ -29,7 +29,7 @@ constexpr ParameterInfo parameters[] = {
     {"emission_spectra", "bool", 0, 1, 0, "choice: three times the work; error without it in the ledger", "1: coloured light scatters by its own spectrum; residual form only"},
     {"angle_scale", "1", 1, 17.5f, 1, "choice: for pictures", "enlarges the kernel"},
     {"texel_px", "px", 1, 16, 4, "choice: error in the ledger", "least width of a texel of the grid on which wide glare is computed"},
-    {"near_px", "px", 0, 8, 8, "choice: error in the ledger", "radius of the near field, done at full resolution"},
+    {"near_px", "px", 0, 16, 15, "choice: the least whose seam with the grid cannot be seen (docs/speed_against_error.md)", "radius of the near field, done at full resolution"},
     {"near_from", "1", 0, 1e6f, 16, "choice: dimmer light has hardly a halo of its own", "photographic: light above this many times the adaptation luminance has a near field; 0: all light"},
     {"rebuild_mm", "mm", 0.02f, 1, 0.2f, "choice: linear between diameters, error in luidolt_spectral's ledger", "distance of the pupil diameters at which the kernel is built"},
     {"wearer_age", "years", 0, 90, 0, "choice", "age of who wears the headset; 0: as the person"},
@@ -150,7 +150,7 @@ GlareSetup ClosedForm::setup() {
     const bool differ = !(person() == wearer()), photographic = params_.photographic > 0.5f;
     GlareSetup setup;
     setup.kernels = {own, wearers};
-    if (differ) setup.kernels.push_back(own);
+    if (differ) setup.kernels = {own, wearers, own, wearers};
     setup.terms = observer_terms(photographic, params_.rescatter, 1, differ ? std::optional(2u) : std::nullopt);
     if (params_.emission_spectra > 0.5f && !photographic) use_emission_spectra(setup, straylight(person(), white, waves));
     setup.texel_px = params_.texel_px;

@@ -121,6 +121,7 @@ GlareSetup FraunhoferMask::setup() {
     setup.texel_px = params_.texel_px;
     setup.near_px = params_.near_px;
     setup.positive = true;
+    setup.smooth = false;
     setup.billboard_texels = static_cast<uint>(std::lround(params_.billboard_texels));
     setup.sigmoid = params_.sigmoid > 0.5f;
     return setup;

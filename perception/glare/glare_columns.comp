@@ -39,9 +39,9 @@ void main() {
     if (mode == mode_kernel) {
         // Of two real, symmetric kernels a and b the transform of a + i b is A + i B with real A and B.
         const uint real_plane = (3 * push.first_key + 2 * plane) * glare_plane + column;
-        const float across = sharpening(float(column) / float(fft_n), push.damping) / float(fft_n * fft_n);
+        const float across = sharpening(float(column) / float(fft_n), push.damping, push.order) / float(fft_n * fft_n);
         for (uint r = 0; r < 8; ++r) {
-            const float scale = across * sharpening(float(j + fft_n / 8 * r) / float(fft_n), push.damping);
+            const float scale = across * sharpening(float(j + fft_n / 8 * r) / float(fft_n), push.damping, push.order);
             const uint at = real_plane + (j + fft_n / 8 * r) * glare_row;
             spectrum[at] = v[r].x * scale;
             if (plane == 0) spectrum[at + glare_plane] = v[r].y * scale;

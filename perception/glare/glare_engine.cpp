@@ -1,6 +1,7 @@
 #include "perception/glare/glare_engine.h"
 
 #include "perception/glare/glare_math.glsl"
+#include "perception/glare/glare_split.h"
 #include "shaders/scene_statistics.h"
 
 #include "perception/glare/glare_apply.comp.h"
@@ -14,6 +15,7 @@
 #include "perception/glare/glare_kernel.comp.h"
 #include "perception/glare/glare_lit.comp.h"
 #include "perception/glare/glare_near.comp.h"
+#include "perception/glare/glare_near_drawn.comp.h"
 #include "perception/glare/glare_pixels.comp.h"
 #include "perception/glare/glare_rows.comp.h"
 #include "perception/glare/glare_splat.comp.h"
@@ -64,14 +66,40 @@ glm::dvec3 scattered_beyond(const RadialProfile& profile, uint part, double from
     return sum;
 }
 
-std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> person) {
+namespace {
+
+glm::dvec3 part_at(const RadialProfile& profile, uint part, double theta) {
+    const double place = glare::radial_place(theta, static_cast<double>(radial_first), radial_entries);
+    const auto i = std::min<std::size_t>(static_cast<std::size_t>(place), radial_entries - 2);
+    return glm::mix(glm::dvec3(profile[i].part[part]), glm::dvec3(profile[i + 1].part[part]), place - static_cast<double>(i));
+}
+
+// The near part of a profile, and behind it the far part.
+void append_split(const RadialProfile& profile, double near_rad, bool capped, RadialProfile& to) {
+    const std::size_t near = to.size(), far = near + radial_entries;
+    to.resize(far + radial_entries);
+    for (uint part = 0; part < radial_parts; ++part) {
+        const FarPart far_part([&](double theta) { return part_at(profile, part, theta); }, near_rad, capped);
+        for (uint i = 0; i < radial_entries; ++i) {
+            const double theta = glare::radial_angle(i, static_cast<double>(radial_first), radial_entries);
+            const glm::dvec3 whole = profile[i].part[part], smooth = far_part(theta, whole);
+            to[near + i].part[part] = whole - smooth;
+            to[far + i].part[part] = smooth;
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> persons) {
     if (photographic) return {{source_scene, 0}};
     std::vector<GlareTerm> terms = {{source_excess, 0}};
-    if (person) {
-        terms.push_back({source_displayed, *person, 1, false});
-        terms.push_back({source_displayed, wearer, -1, false});
+    if (persons) {
+        terms.push_back({source_displayed, *persons, 1, false});
+        terms.push_back({source_displayed, *persons + 1, -1, false});
     }
-    if (rescatter > 0) terms.push_back({source_drawn, wearer, -rescatter, false});
+    // What is drawn at edges of the displayed light lies far from the tiles that have a near field.
+    if (rescatter > 0) terms.push_back({source_drawn, wearer, -rescatter, !persons});
     return terms;
 }
 
@@ -86,6 +114,7 @@ Result<void> GlareModel::make_kernels() {
         {&gather_coverage_, "glare.gather_coverage", glare_gather_comp_spv, 5, sizeof(GatherPush), {0}},
         {&gather_veil_, "glare.gather", glare_gather_comp_spv, 5, sizeof(GatherPush), {1}},
         {&near_, "glare.near", glare_near_comp_spv, 6, sizeof(NearPush), {}},
+        {&near_drawn_, "glare.near_drawn", glare_near_drawn_comp_spv, 7, sizeof(NearPush), {}},
         {&kernel_kernel_, "glare.kernel", glare_kernel_comp_spv, 2, sizeof(KernelPush), {}},
         {&zone_, "glare.zone", glare_zone_comp_spv, 2, sizeof(ZonePush), {}},
         {&lit_, "glare.lit", glare_lit_comp_spv, 2, sizeof(BillboardPush), {}},
@@ -119,10 +148,15 @@ uint GlareModel::near_source() const {
     return found == setup_.terms.end() ? source_drawn : found->source;
 }
 
-float GlareModel::near_rad(uint kernel) const {
-    const bool near = near_field() && std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.near && t.kernel == kernel; });
+bool GlareModel::has_near_field(uint kernel) const {
+    return near_field() && std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.near && t.kernel == kernel; });
+}
+
+float GlareModel::widest_near_rad(uint kernel) const {
+    const bool drawn = std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.source == source_drawn && t.kernel == kernel; });
+    const double px = std::floor(static_cast<double>(setup_.near_px) * (drawn ? drawn_near_share : 1));
     // Without a near field the light of half a texel stays where it is.
-    return static_cast<float>(std::max(near ? std::floor(static_cast<double>(setup_.near_px)) * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch));
+    return static_cast<float>(std::max(has_near_field(kernel) ? px * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch));
 }
 
 float GlareModel::window_sigma_rad() const { return setup_.window_sigma_deg * static_cast<float>(pi / 180); }
@@ -173,14 +207,35 @@ Result<void> GlareModel::make_sized_passes() {
     return make_kernel({&apply_drawn_, "glare.apply_drawn", glare_apply_comp_spv, 5, sizeof(LatticePush), {grid_.step, source_drawn, 0}});
 }
 
+// Near and far part of every kernel.
+Result<void> GlareModel::make_profiles() {
+    RadialProfile profiles;
+    capped_.assign(setup_.kernels.size(), false);
+    near_rad_.clear();
+    for (uint kernel = 0; kernel < setup_.kernels.size(); ++kernel) {
+        const RadialProfile& profile = setup_.kernels[kernel];
+        near_rad_.push_back(widest_near_rad(kernel));
+        if (profile.empty()) continue;
+        const glm::dvec3 weight = safe_weights(kernel, typical_pupil_mm);
+        const auto whole = [&](double theta) {
+            glm::dvec3 sum{0};
+            for (uint part = 0; part < radial_parts; ++part) sum += weight[static_cast<int>(part)] * part_at(profile, part, theta);
+            return sum;
+        };
+        const double reach = has_near_field(kernel) ? FarPart::reach(whole, static_cast<double>(near_rad_[kernel]), grid_.pitch) : 0;
+        capped_[kernel] = reach > 0;
+        if (reach > 0) near_rad_[kernel] = static_cast<float>(reach);
+        append_split(profile, static_cast<double>(near_rad_[kernel]), capped_[kernel], profiles);
+    }
+    return make_static(profiles_, profiles, "glare.profiles");
+}
+
 Result<void> GlareModel::make_buffers() {
     ENTOPTIC_CHECK(make_static(twiddle_, make_twiddles(), "glare.twiddle"));
     ENTOPTIC_CHECK(make_static(taps_, grid_.node_taps, "glare.taps"));
     ENTOPTIC_CHECK(make_static(splat_offsets_, grid_.splat_offsets, "glare.splat_offsets"));
     ENTOPTIC_CHECK(make_static(splat_entries_, grid_.splat_entries, "glare.splat_entries"));
-    RadialProfile profiles;
-    for (const RadialProfile& profile : setup_.kernels) profiles.insert(profiles.end(), profile.begin(), profile.end());
-    ENTOPTIC_CHECK(make_static(profiles_, profiles, "glare.profiles"));
+    ENTOPTIC_CHECK(make_profiles());
 
     const EyeGeometry& g = context_.views[0];
     const std::size_t views = context_.views.size(), all_nodes = views * nodes(), pixels = std::size_t(g.width) * g.height * views, keys = built_.size();
@@ -226,7 +281,7 @@ void GlareModel::record_coverage(StageIo& io) {
 }
 
 void GlareModel::record_transform(gpu::Commands& c, uint planes) {
-    const FftPush whole{0, glare_n, 3, 0, 0, 0, 0};
+    const FftPush whole{0, glare_n, 3, 0, 0, 0, 0, 0};
     const uint groups = FftSize(glare_n).groups();
     c.dispatch(rows_transform_, {work_, twiddle_.buffer}, whole, {groups, planes, 1});
     c.barrier();
@@ -240,13 +295,14 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     const double pupil_mm = diameter_mm(steps);
     c.barrier();
     if (!record_far_kernel(io, kernel, steps)) {
-        const KernelPush push{static_cast<float>(grid_.pitch), near_rad(kernel), kernel * radial_entries, vec3(safe_weights(kernel, pupil_mm))};
+        const KernelPush push{static_cast<float>(grid_.pitch), far_profile(kernel), vec3(safe_weights(kernel, pupil_mm))};
         c.dispatch(kernel_kernel_, {profiles_.buffer, work_}, push, kernel_groups());
     }
     c.barrier();
     c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {FftSize(grid_.n).groups(), 2, 1});
     c.barrier();
     FftPush spectrum = all_rows();
+    spectrum.order = sharpening_order(static_cast<double>(near_rad(kernel)), grid_.pitch, capped_[kernel], setup_.smooth);
     spectrum.first_key = spectrum.second_key = key;
     c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {FftSize(grid_.n).groups(), 2, 1});
     if (std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.kernel == kernel && leaves(t); }))
@@ -341,7 +397,7 @@ Result<void> GlareModel::record(StageIo& io) {
     record_gate(io, choice);
     bool near_before = false, before = false;
     for (const GlareTerm& term : setup_.terms)
-        if (term.near && near_field()) {
+        if (term.near && near_field() && term.source != source_drawn) {
             record_near(io, term, choice, near_before);
             near_before = true;
         }
@@ -355,6 +411,7 @@ Result<void> GlareModel::record(StageIo& io) {
     for (const GlareTerm& term : setup_.terms)
         if (term.source == source_drawn) {
             io.commands.barrier();
+            if (term.near && near_field()) record_near_drawn(io, term, choice);
             record_far(io, term, choice, false);
             record_apply(io, apply_drawn_);
         }
@@ -379,18 +436,30 @@ void GlareModel::record_gate(StageIo& io, KernelChoice choice) {
     gate.groups[gate_apply] = {gpu::groups_for(io.width, 256), gpu::groups_for(io.height + grid_.step / 2, grid_.step), io.views};
     io.commands.dispatch(gate_, {io.statistics, io.gate, near_tiles_, io.state}, gate, {1, 1, 1});
     io.commands.barrier();
-    const TilesPush tiles{io.tiles_x, io.tiles_y, io.views, near_from()};
+    const double widest = near_rad_.empty() ? 0 : static_cast<double>(*std::max_element(near_rad_.begin(), near_rad_.end()));
+    const double reach_px = std::min(std::ceil(widest / grid_.smallest_step), static_cast<double>(max_near_px));
+    const TilesPush tiles{io.tiles_x, io.tiles_y, io.views, near_from(), gpu::groups_for(static_cast<uint>(reach_px), tile_height)};
     io.commands.dispatch_indirect(tiles_, {io.tiles, io.state, io.gate, near_tiles_, flags_}, tiles, io.gate, entry(gate_tiles));
     io.commands.barrier();
 }
 
-void GlareModel::record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) {
+NearPush GlareModel::near_push(const StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) const {
     const Gaze gaze(io);
-    const NearPush push{io.width, io.height, io.tiles_x, io.tiles_y, term.kernel * radial_entries, term.turn, leaves(term) ? 1u : 0u, add ? 1u : 0u,
-                        near_rad(term.kernel), near_from(), window_sigma_rad(), vec3(blended(term.kernel, choice) * static_cast<double>(term.sign)),
-                        {gaze.of[0], gaze.of[1]}};
+    return {io.width, io.height, io.tiles_x, io.tiles_y, near_profile(term.kernel), term.turn, leaves(term) ? 1u : 0u, add ? 1u : 0u,
+            near_rad(term.kernel), near_from(), window_sigma_rad(), vec3(blended(term.kernel, choice) * static_cast<double>(term.sign)),
+            {gaze.of[0], gaze.of[1]}};
+}
+
+void GlareModel::record_near(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) {
     if (add) io.commands.barrier();
-    io.commands.dispatch_indirect(near_, {io.scene, io.state, near_tiles_, io.geometry, profiles_.buffer, near_light_}, push, io.gate, entry(gate_near));
+    io.commands.dispatch_indirect(near_, {io.scene, io.state, near_tiles_, io.geometry, profiles_.buffer, near_light_}, near_push(io, term, choice, add),
+                                  io.gate, entry(gate_near));
+}
+
+// After apply(): near_light_ holds what was drawn, in the tiles around the sources and everywhere else.
+void GlareModel::record_near_drawn(StageIo& io, const GlareTerm& term, KernelChoice choice) {
+    io.commands.dispatch_indirect(near_drawn_, {io.scene, io.state, near_tiles_, io.geometry, profiles_.buffer, near_light_, flags_},
+                                  near_push(io, term, choice, false), io.gate, entry(gate_near));
 }
 
 // Pixels to nodes' exchange: what arrives and what leaves.

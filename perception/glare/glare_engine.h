@@ -20,7 +20,9 @@
 namespace entoptic::perception {
 
 // Pupils are taken from 1 to 9 mm.
-constexpr double smallest_pupil_mm = 1, largest_pupil_mm = 9;
+constexpr double smallest_pupil_mm = 1, typical_pupil_mm = 4, largest_pupil_mm = 9;
+// Reach of the near field of the light that was drawn, times near_px: a halo is smoother than a source.
+constexpr double drawn_near_share = 0.75;
 // Largest share of the light that may leave its pixel.
 constexpr double most_scattered = 0.9;
 
@@ -62,7 +64,7 @@ struct GlareTerm {
     uint source = source_scene;  // see glare_gpu.h. Light of source_excess stays in its place, too; other light leaves it
     uint kernel = 0;
     float sign = 1;
-    bool near = true;  // with a near field; only source_scene and source_excess can have one
+    bool near = true;  // with a near field; source_displayed cannot have one. That of source_drawn is narrower, and only where another term's is
     uint turn = 0;     // channel c takes the source's channel (c + turn) mod 3
     uint zone = 0;     // of GlareSetup::zones, each with a kernel of its own
 };
@@ -71,9 +73,10 @@ struct GlareTerm {
 // own eye already scatters what the panel sends, and what is left is
 //   the light that the panel cannot send, scattered by the person's eye (kernel 0),
 //   less what the wearer's eye (`wearer`) scatters of what this draws: `rescatter` of it,
-//   and, where they differ, the displayed light scattered by the person's eye (`person`, again) less that scattered by the wearer's.
-// Only kernel 0 has a near field.
-std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> person);
+//   and, where they differ, the displayed light scattered by the person's eye (`persons`, again) less that scattered by the wearer's (the next, again).
+// Kernels with and without a near field are not the same on the grid: hence "again".
+// The displayed light has no near field.
+std::vector<GlareTerm> observer_terms(bool photographic, float rescatter, uint wearer, std::optional<uint> persons);
 
 struct GlareSetup {
     std::vector<RadialProfile> kernels;
@@ -87,6 +90,7 @@ struct GlareSetup {
     vec3 gain{1};                       // energy of the whole kernel; not 1 for a kernel with a colour cast
     uint zones = 1;                     // parts of the view from left to right, blended: a term scatters the light of its zone
     uint billboard_texels = 0;          // up to so many lit texels of the grid the kernel is drawn at each of them, else by transforms
+    bool smooth = true;     // beyond the near field kernels have no detail as fine as a texel
     bool positive = false;  // what arrives is cut off at 0: for kernels with streaks, which the grid sharpens; not for signed ones
     bool sigmoid = false;   // what is scattered is drawn through tumblin_sigmoid(), and nothing leaves its place
 };
@@ -150,7 +154,12 @@ protected:
         return {};
     }
 
-    float near_rad(uint kernel) const;  // the near field of a kernel ends here
+    float near_rad(uint kernel) const { return near_rad_[kernel]; }  // the near field of a kernel ends here
+    // Parts of a kernel's profile (glare_split.h) in profiles(): first entries. Their weights: at most 0.9 of all light is scattered.
+    uint near_profile(uint kernel) const { return 2 * kernel * radial_entries; }
+    uint far_profile(uint kernel) const { return (2 * kernel + 1) * radial_entries; }
+    const gpu::Buffer& profiles() const { return profiles_.buffer; }
+    glm::dvec3 safe_weights(uint kernel, double pupil_mm) const;
     double smallest_step() const { return grid_.smallest_step; }
     double pitch() const { return grid_.pitch; }
     const ModelContext context_;
@@ -158,9 +167,12 @@ protected:
 private:
     Result<void> prepare();
     Result<void> make_buffers();
+    Result<void> make_profiles();
     Result<void> make_sized_passes();
     void record_coverage(StageIo& io);
     void record_kernel(StageIo& io, uint kernel, long steps);
+    NearPush near_push(const StageIo& io, const GlareTerm& term, KernelChoice choice, bool add) const;
+    void record_near_drawn(StageIo& io, const GlareTerm& term, KernelChoice choice);
     void record_node_coverage(StageIo& io, uint kernel, uint key);
     void record_zone(StageIo& io, const gpu::Buffer& nodes, uint zone, std::size_t first, bool gated);
     void record_billboard(StageIo& io, uint key);
@@ -170,8 +182,9 @@ private:
     void record_far(StageIo& io, const GlareTerm& term, KernelChoice choice, bool add);
     void record_apply(StageIo& io, const gpu::Kernel& apply);
 
-    glm::dvec3 safe_weights(uint kernel, double pupil_mm) const;
     glm::dvec3 blended(uint kernel, KernelChoice choice) const;
+    bool has_near_field(uint kernel) const;
+    float widest_near_rad(uint kernel) const;
     bool near_field() const { return setup_.near_px >= 1 && (near_source() == source_scene || near_source() == source_excess); }
     uint near_source() const;
     bool has(uint source) const;
@@ -184,18 +197,20 @@ private:
         return {io.width, io.height, grid_.nodes_x, grid_.nodes_y, grid_.step, io.tiles_x, io.tiles_y, near_field() ? 1u : 0u, turn};
     }
     uint row_groups() const { return gpu::groups_for(grid_.rows, FftSize(grid_.n).lines()); }
-    FftPush all_rows() const { return {0, grid_.n, 3, 0, 0, 0, static_cast<float>(grid_.damping)}; }
-    FftPush light_rows() const { return {grid_.first_row, grid_.rows, 3, 0, 0, 0, 0}; }
+    FftPush all_rows() const { return {0, grid_.n, 3, 0, 0, 0, static_cast<float>(grid_.damping), 0}; }
+    FftPush light_rows() const { return {grid_.first_row, grid_.rows, 3, 0, 0, 0, 0, 0}; }
 
     GlareSetup setup_;
     bool prepared_ = false, first_recorded_ = false;
     GlareGrid grid_;
     float grid_texel_px_ = 0;
     std::vector<glm::dvec3> shares_;          // by kernel: share of the light that leaves its pixel by each part of weight 1
+    std::vector<float> near_rad_;             // by kernel, and
+    std::vector<bool> capped_;                // whether its far part is a cap
     std::vector<std::optional<long>> built_;  // by key: diameter (in steps) of the kernel there
 
     gpu::Kernel gate_, tiles_, coverage_, splat_, rows_transform_, columns_transform_, rows_forward_, rows_inverse_, columns_convolve_,
-        columns_kernel_, gather_coverage_, gather_veil_, near_, kernel_kernel_, apply_, apply_drawn_;
+        columns_kernel_, gather_coverage_, gather_veil_, near_, near_drawn_, kernel_kernel_, apply_, apply_drawn_;
     gpu::Kernel pixels_[4];  // by source
     gpu::Kernel zone_, lit_, billboard_choice_, billboard_kernel_, billboards_;
     StaticBuffer delta_rows_;

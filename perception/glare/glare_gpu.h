@@ -37,7 +37,8 @@ const uint gate_billboard_choice = 8, gate_billboards = 9;
 // Why the gate ran or not (Gate.reason).
 const uint gate_reason_runs = 0, gate_reason_dark = 1, gate_reason_uniform = 2, gate_reason_within_panel = 3;
 
-const uint max_near_px = 12;           // reach of the near field where pixels are small; two tiles high, less than one wide
+const uint max_near_px = 24;           // reach of the near field where pixels are small; three tiles high, less than one wide
+const uint near_none = 0, near_reached = 1, near_beside = 2;      // of a tile, in the flags
 const uint max_near_groups = 4096;     // workgroups of the near field; each takes every 4096th tile of the list
 
 // One node of the coarse pixel lattice, as a tap into one patch of the glare grid.
@@ -64,6 +65,7 @@ struct GatePush {
 struct TilesPush {
     uint tiles_x, tiles_y, views;
     float near_from;                   // times the adaptation luminance; < 0: the panel's white
+    uint rows;                         // of tiles that the near field reaches up and down
 };
 
 struct LatticePush {                   // pixels -> nodes, apply
@@ -107,7 +109,8 @@ struct FftPush {
     uint input_channels;               // 1: all channels read the same grid (coverage)
     uint first_key, second_key;        // planes of the kernel's spectrum
     float blend;                       // 0: first key .. 1: second
-    float damping;                     // kernel: of the splines that smooth it; see sharpening() of the math
+    float damping;                     // kernel: of the splines that smooth it, and
+    uint order;                        // how far it is sharpened: see sharpening() of the math
 };
 
 struct GatherPush {
@@ -126,7 +129,7 @@ struct GatherPush {
 
 struct NearPush {
     uint width, height, tiles_x, tiles_y;
-    uint profile;                      // first entry of the kernel's profile
+    uint profile;                      // first entry of the near part of the kernel's profile
     uint turn;                         // channel c takes the light's channel c + turn
     uint leaves, add;                  // as in GatherPush
     float near;                        // rad
@@ -137,8 +140,8 @@ struct NearPush {
 };
 
 struct KernelPush {
-    float pitch, near;                 // rad
-    uint profile;                      // first entry
+    float pitch;                       // rad
+    uint profile;                      // first entry of its far part
     vec3 weights;                      // of the profile's parts
 };
 

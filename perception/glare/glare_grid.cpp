@@ -12,7 +12,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 // Texels may be so much wider than asked for before the grid takes twice as many: a full eye of a Vive Pro has 1.09.
 constexpr double most_widened = 1.1;
-// Of a foveated image the near field must be resolved where pixels are smallest, in the fovea: 8 of these pixels are 11.2 there, within
+// Of a foveated image the near field must be resolved where pixels are smallest, in the fovea: 16 of these pixels are 22.4 there, within
 // max_near_px.
 constexpr double foveated_pixel_widening = 1.4;
 glm::dvec3 direction_at(const EyeGeometry& g, double x, double y) { return geometry::geometry_direction(g, {x, y}); }
@@ -132,7 +132,7 @@ void choose_patches(std::span<const EyeGeometry> views, double texel_px, uint le
     grid.rows = 2 * static_cast<uint>(std::ceil(rows)) + 1;
     grid.step = 1;
     while (grid.step < 8 && 2 * grid.step * pixel <= grid.pitch * 1.01) grid.step *= 2;
-    grid.damping = 6 + 6 * std::pow(grid.step * pixel / grid.pitch, 2);
+    grid.damping = 7 + 6 * std::pow(grid.step * pixel / grid.pitch, 2);
 }
 
 NodeTap tap_of(const GlareGrid& grid, uint patch_index, glm::dvec3 d, double weight) {

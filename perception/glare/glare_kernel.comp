@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The far kernel of one pupil diameter on the glare grid from its profile, per sr, averaged over each texel, less the near field.
+// The far kernel of one pupil diameter on the glare grid from the far part of its profile, per sr, averaged over each texel.
 // Grid 0: red + i green, grid 1: blue.
 #include "perception/glare/glare_gpu.h"
 
@@ -15,10 +15,7 @@ layout(scalar, push_constant) uniform PushBlock { KernelPush push; };
 
 #include "perception/glare/glare_radial.glsl"
 
-vec3 kernel(vec2 offset) {
-    const float theta = length(offset);
-    return radial_kernel(theta, push.profile, push.weights) * (1.0 - near_share(theta, push.near));
-}
+vec3 kernel(vec2 offset) { return radial_kernel(length(offset), push.profile, push.weights); }
 
 void main() {
     const uvec2 at = gl_GlobalInvocationID.xy;

@@ -64,9 +64,9 @@ FN real aperture_tail(real pupil_um, real lambda_um, real sine) {
     return lambda_um / (LIT(31.00627668029982) * pupil_um * sine * sine * sine);
 }
 
-// Share of the near field in the kernel at the angle theta: 1 at the centre, 0 from `near` on. What is left for the coarse grid is the
-// smoothest cap that theta^-3 can be given inside `near`: an even polynomial that meets it at `near` with value, slope and curvature,
-// a bell that the grid can carry; a window that goes to zero at the centre leaves a ring, which it cannot.
+// Share of the near field in a kernel that is not round, at the angle theta: 1 at the centre, 0 from `near` on. What is left for the coarse
+// grid is the cap that theta^-3 gets inside `near` by an even polynomial that meets it at `near` with value, slope and curvature. (Round kernels are
+// split by their own form: glare_split.h.)
 FN real near_share(real theta, real near) {
     if (theta >= near) return LIT(0.0);
     real t = theta / near;
@@ -101,15 +101,29 @@ FN rvec3 spline_weights(real d) {
     return rvec3(LIT(0.5) * (LIT(0.5) - d) * (LIT(0.5) - d), LIT(0.75) - d * d, LIT(0.5) * (LIT(0.5) + d) * (LIT(0.5) + d));
 }
 
-// The splines on the way to the grid and back damp a frequency f (cycles a texel) by sinc(f)^damping. This is the inverse of that to third
-// order in sin^2(pi f): a kernel sharpened by it comes out as it was meant. It spans 7 texels, so that it cannot ring far out.
-FN real sharpening(real f, real damping) {
+// The splines on the way to the grid and back and the mean over a texel damp a frequency f (cycles a texel) by sinc(f)^damping. This is the
+// inverse of that to the power `order` of s = sin^2(pi f): a kernel sharpened by it comes out as it was meant, and as it spans 2 order + 1 texels it
+// cannot ring farther out. (pi f)^2 / s = sum 2^(2k+1) s^k / ((k+1)^2 C(2k+2, k+1)), the square of the arc sine; its power damping / 2 by
+// J. C. P. Miller's recurrence (Henrici 1956).
+const uint most_sharpening = 8u;
+FN real sharpening(real f, real damping, uint order) {
     real s = sin(LIT(3.141592653589793) * f);
     s = s * s;
-    real m = damping;
-    real second = m * LIT(0.075) + m * (m - LIT(1.0)) / LIT(72.0);
-    real third = m * LIT(0.044642857142857144) + m * (m - LIT(1.0)) * LIT(0.0125) + m * (m - LIT(1.0)) * (m - LIT(2.0)) / LIT(1296.0);
-    return LIT(1.0) + s * (m / LIT(6.0) + s * (second + s * third));
+    real base[most_sharpening + 1u];
+    real power[most_sharpening + 1u];
+    base[0] = LIT(1.0);
+    power[0] = LIT(1.0);
+    real sum = LIT(1.0), up = LIT(1.0);
+    for (uint n = 1u; n <= order; ++n) {
+        real k = real(n);
+        base[n] = base[n - 1u] * (LIT(2.0) * k * k) / ((k + LIT(1.0)) * (LIT(2.0) * k + LIT(1.0)));
+        real next = LIT(0.0);
+        for (uint i = 1u; i <= n; ++i) next += (real(i) * (LIT(0.5) * damping + LIT(1.0)) - k) * base[i] * power[n - i];
+        power[n] = next / k;
+        up *= s;
+        sum += power[n] * up;
+    }
+    return sum;
 }
 
 // --- the glare grid ---

@@ -3,6 +3,7 @@
 
 #include "perception/glare/glare_engine.h"
 #include "perception/glare/glare_math.glsl"
+#include "perception/glare/glare_split.h"
 #include "perception/testing/harness.h"
 #include "perception/testing/oracles.h"
 #include "perception/testing/scenes.h"
@@ -115,12 +116,14 @@ public:
     // The near part.
     ImageD near(const ImageD& in, const Kernel& kernel, bool leaves) const {
         ImageD out(in.width, in.height, 3, 0.0);
+        const auto [near_rad, capped] = near_field(kernel, true);
+        const FarPart smooth(kernel, near_rad, capped);
         for (int ty = 0; ty < in.height; ty += tile_height)
             for (int tx = 0; tx < in.width; tx += tile_width) {
                 const glm::dvec2 middle = glm::min(glm::dvec2(tx + tile_width * 0.5, ty + tile_height * 0.5), glm::dvec2(in.width - 0.5, in.height - 0.5));
                 const auto towards = [&](double dx, double dy) { return geometry::geometry_direction(g_, middle + glm::dvec2(dx, dy)); };
                 const glm::dvec3 across = (towards(2, 0) - towards(-2, 0)) * 0.25, down = (towards(0, 2) - towards(0, -2)) * 0.25;
-                const int radius = static_cast<int>(std::clamp(std::ceil(near_rad(true) / std::min(glm::length(across), glm::length(down))), 1.0, 12.0));
+                const int radius = static_cast<int>(std::clamp(std::ceil(near_rad / std::min(glm::length(across), glm::length(down))), 1.0, double(max_near_px)));
                 std::vector<glm::dvec3> weights;
                 for (int dy = -radius; dy <= radius; ++dy)
                     for (int dx = -radius; dx <= radius; ++dx) {
@@ -129,7 +132,7 @@ public:
                         for (int j = 0; j < n && (dx || dy); ++j)
                             for (int i = 0; i < n; ++i) {
                                 const double theta = glm::length((dx + (i + 0.5) / n - 0.5) * across + (dy + (j + 0.5) / n - 0.5) * down);
-                                sum += kernel(theta) * glare::near_share(theta, near_rad(true));
+                                sum += kernel(theta) - smooth(theta, kernel(theta));
                             }
                         weights.push_back(sum * (glm::length(glm::cross(across, down)) / (n * n)));
                     }
@@ -146,9 +149,18 @@ public:
         return out;
     }
 private:
-    double near_rad(bool near) const { return std::max(near ? std::floor(near_px_) * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch); }
+    struct NearField {
+        double rad;
+        bool capped;
+    };
+    NearField near_field(const Kernel& kernel, bool near) const {
+        const double widest = std::max(near ? std::floor(near_px_) * grid_.pixel_rad : 0.0, 0.5 * grid_.pitch);
+        const double reach = near ? FarPart::reach(kernel, widest, grid_.pitch) : 0;
+        return {reach > 0 ? reach : widest, reach > 0};
+    }
     Plane spectrum_of(const Kernel& kernel, int c, bool near) const {
-        const double within = near_rad(near);
+        const auto [within, capped] = near_field(kernel, near);
+        const FarPart smooth(kernel, within, capped);
         Plane plane(grid_.n * grid_.n);
         const int half = static_cast<int>(grid_.n) / 2;
         for (int y = -half; y < half; ++y)
@@ -158,12 +170,13 @@ private:
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {
                         const double theta = std::hypot(x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5) * grid_.pitch;
-                        sum += kernel(theta)[c] * (1 - glare::near_share(theta, within));
+                        sum += smooth(theta, kernel(theta))[c];
                     }
                 plane[static_cast<std::size_t>((y + 2 * half) % (2 * half) * 2 * half + (x + 2 * half) % (2 * half))] = sum / (n * n);
             }
         fftw(plane, FFTW_FORWARD);
-        const auto sharpened = [&](std::size_t i) { return glare::sharpening(static_cast<double>(i) / grid_.n, grid_.damping); };
+        const uint order = sharpening_order(within, grid_.pitch, capped, true);
+        const auto sharpened = [&](std::size_t i) { return glare::sharpening(static_cast<double>(i) / grid_.n, grid_.damping, order); };
         for (std::size_t i = 0; i < plane.size(); ++i) plane[i] *= sharpened(i % grid_.n) * sharpened(i / grid_.n);
         return plane;
     }

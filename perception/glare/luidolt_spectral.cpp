@@ -25,8 +25,8 @@ constexpr ParameterInfo parameters[] = {
     {"diffraction", "1", 0, 1, 1, "Luidolt 2020, eq. 5", "share of the light that the edge of the pupil diffracts; 0 with no particles: no glare at all"},
     {"patches", "1", 0, 256, 64, "choice: error and time in the ledger (Welch 1967)", "patches of the pupil whose particles give the halo its texture; 0: smooth"},
     {"texel_px", "px", 1, 16, 4, "choice: 4 has p99 dE_ITP 0.3", "least width of a texel of the grid on which wide glare is computed"},
-    {"near_px", "px", 0, 8, 8, "choice: where the grid shows", "radius of the near field, done at full resolution"},
-    {"near_from", "1", 0, 1e6f, 16, "choice: dimmer light the panel shows as it is, and the wearer's own eye scatters it", "light above this many times the adaptation luminance has a near field; 0: all light"},
+    {"near_px", "px", 0, 16, 12, "choice: where the grid shows (docs/speed_against_error.md)", "radius of the near field, done at full resolution"},
+    {"near_from", "1", 0, 1e6f, 32, "choice: dimmer light the panel shows as it is, and the wearer's own eye scatters it", "light above this many times the adaptation luminance has a near field; 0: all light"},
     {"rebuild_mm", "mm", 0.02f, 1, 0.2f, "choice: linear between diameters, so that twice 0.1 mm is as good", "distance of the pupil diameters at which the kernel is built"},
     {"angle_scale", "1", 1, 17.5f, 1, "trap L10: 17.5 is the paper's texel for pixel", "enlarges the kernel"},
     {"radius_deg", "deg", 2, 180, 180, "trap L13: the veil counts out to the edge", "the kernel ends here"},
@@ -72,18 +72,19 @@ private:
     SpectralTable spectrum_{};
     ParticleField particles_;
     gpu::Kernel particles_kernel_, structure_kernel_, pupil_sum_, textured_kernel_;
-    StaticBuffer spectrum_table_, halo_table_, cell_offsets_, particle_list_, particle_mean_, radii_;
+    StaticBuffer spectrum_table_, cell_offsets_, particle_list_, particle_mean_, radii_;
     gpu::Buffer structure_, pupil_structure_;
 };
 
-// Without the texture: halo of the particles, and the pupil's tail for a pupil of 1 mm.
+// Without the texture: halo of the particles, and the pupil's tail for a pupil of 1 mm. The saturated rings of the halo lie outside the gamut: only
+// the sum of both is light (trap L9).
 RadialProfile LuidoltSpectral::smooth_profile() const {
     const std::vector<vec3> halo = make_halo_table(params_);
     const double scale = static_cast<double>(params_.angle_scale), radius = static_cast<double>(params_.radius_deg) * degree;
     return make_profile([&](double theta) {
         const double sine = std::sin(std::min(theta / scale, 90 * degree)), place = sine * (halo_table_size - 1);
         const auto i = std::min<std::size_t>(static_cast<std::size_t>(place), halo_table_size - 2);
-        const glm::dvec3 scattered = glm::max(glm::mix(glm::dvec3(halo[i]), glm::dvec3(halo[i + 1]), place - static_cast<double>(i)), glm::dvec3(0));
+        const glm::dvec3 scattered = glm::mix(glm::dvec3(halo[i]), glm::dvec3(halo[i + 1]), place - static_cast<double>(i));
         const double share = glare::radius_share(theta, radius) / (scale * scale);
         return RadialEntry{{scattered * share, glm::dvec3(spectrum_.mean_lambda_um) * (glare::aperture_tail(1000, 1, sine) * share), {}}};
     });
@@ -96,6 +97,7 @@ GlareSetup LuidoltSpectral::setup() {
     GlareSetup setup;
     setup.kernels = {smooth_profile()};
     setup.terms = {{source_scene, 0}};
+    setup.smooth = particles_.pairs == 0;
     setup.texel_px = params_.texel_px;
     setup.near_px = params_.near_px;
     setup.near_from = printed ? 0 : params_.near_from;
@@ -113,7 +115,6 @@ glm::dvec3 LuidoltSpectral::weights(uint, double pupil_mm) const {
 
 Result<void> LuidoltSpectral::prepare_far() {
     ENTOPTIC_CHECK(make_static(spectrum_table_, std::vector<SpectralTable>{spectrum_}, "glare.spectrum"));
-    ENTOPTIC_CHECK(make_static(halo_table_, make_halo_table(params_), "glare.halo"));
     ENTOPTIC_CHECK(make_static(cell_offsets_, particles_.cell_offsets, "glare.cells"));
     ENTOPTIC_CHECK(make_static(particle_list_, particles_.particles, "glare.particles"));
     ENTOPTIC_CHECK(make_static(particle_mean_, particles_.mean, "glare.particle_mean"));
@@ -126,7 +127,7 @@ Result<void> LuidoltSpectral::prepare_far() {
 // Transforms of the pupil's patches.
 void LuidoltSpectral::record_first(StageIo& io) {
     gpu::Commands& c = io.commands;
-    for (const StaticBuffer* s : {&spectrum_table_, &halo_table_, &cell_offsets_, &particle_list_, &particle_mean_, &radii_}) s->record_copy(c);
+    for (const StaticBuffer* s : {&spectrum_table_, &cell_offsets_, &particle_list_, &particle_mean_, &radii_}) s->record_copy(c);
     for (uint first = 0; first < particles_.pairs; first += work_planes()) {
         const uint count = std::min(work_planes(), particles_.pairs - first);
         const StructurePush push{first, count, 0};
@@ -147,18 +148,12 @@ bool LuidoltSpectral::record_far_kernel(StageIo& io, uint kernel, long steps) {
         c.dispatch(pupil_sum_, {structure_, radii_.buffer, pupil_structure_}, push, {structure_n * structure_n / 256, 1, 1});
         c.barrier();
     }
-    const TexturedKernelPush push{static_cast<float>(pitch()),
-                                  near_rad(kernel),
-                                  params_.radius_deg * static_cast<float>(degree),
-                                  static_cast<float>(pupil_mm * 1000),
-                                  params_.particle_diameter_um,
-                                  static_cast<float>(covered_share(params_, pupil_mm)),
-                                  params_.diffraction,
-                                  params_.angle_scale,
-                                  static_cast<float>(safe(pupil_mm)),
-                                  static_cast<float>(glare_patch_um),
-                                  particles_.pairs > 0 ? 1u : 0u};
-    c.dispatch(textured_kernel_, {spectrum_table_.buffer, halo_table_.buffer, pupil_structure_, work()}, push, kernel_groups());
+    const float scale = params_.angle_scale;
+    const glm::dvec3 smooth = safe_weights(kernel, pupil_mm);
+    const TexturedKernelPush push{static_cast<float>(pitch()), near_rad(kernel), params_.radius_deg * static_cast<float>(degree), params_.particle_diameter_um,
+                                  static_cast<float>(smooth.x) / (scale * scale), scale, static_cast<float>(glare_patch_um), particles_.pairs > 0 ? 1u : 0u,
+                                  far_profile(kernel), vec3(smooth)};
+    c.dispatch(textured_kernel_, {spectrum_table_.buffer, profiles(), pupil_structure_, work()}, push, kernel_groups());
     return true;
 }
 

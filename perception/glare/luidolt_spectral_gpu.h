@@ -28,10 +28,13 @@ struct SpectralTable {
 
 struct TexturedKernelPush {
     float pitch, near, radius;         // rad
-    float pupil_um, particle_um, halo, diffraction;   // halo: share f of the light; diffraction: share of the rest that has the aperture's tail
-    float angle_scale, strength;
+    float particle_um;
+    float halo;                        // share of the light that the particles scatter, over the square of angle_scale
+    float angle_scale;
     float patch_um;                    // width of a patch of the pupil
     uint texture_on;                   // 1: halo times the structure factor
+    uint profile;                      // first entry of the smooth profile's far part
+    vec3 weights;                      // of its parts
 };
 
 struct StructurePush {

@@ -2,19 +2,21 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The far kernel of one pupil diameter on the glare grid, per sr, averaged over each texel: aperture and particle halo, all wavelengths,
-// less the near field. Grid 0: red + i green, grid 1: blue.
+// The far kernel of one pupil diameter on the glare grid, per sr, averaged over each texel: the far part of the smooth profile, and what the
+// texture of the particles adds to it or takes from it, which the near field does not have. Grid 0: red + i green, grid 1: blue.
 #include "perception/glare/luidolt_spectral_gpu.h"
 #include "perception/glare/glare_math.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(scalar, binding = 0) readonly buffer Spectrum { SpectralTable spectrum; };
-layout(scalar, binding = 1) readonly buffer Halo { vec3 halo_table[]; };
+layout(scalar, binding = 1) readonly buffer Profile { RadialEntry profile[]; };
 layout(scalar, binding = 2) readonly buffer Structure { float structure[]; };
 layout(scalar, binding = 3) writeonly buffer Grid { vec2 grid[]; };
 
 layout(scalar, push_constant) uniform PushBlock { TexturedKernelPush push; };
+
+#include "perception/glare/glare_radial.glsl"
 
 // Bins of the transform beyond which its texture fades into the smooth halo: from 1/3 to 0.4 of the sampling frequency.
 const float fade_from = 170.0, fade_to = 205.0;
@@ -25,12 +27,6 @@ float structure_at(vec2 bin) {
     const vec2 f = at - vec2(i);
     const uint base = i.y * structure_n + i.x;
     return mix(mix(structure[base], structure[base + 1], f.x), mix(structure[base + structure_n], structure[base + structure_n + 1], f.x), f.y);
-}
-
-vec3 smooth_halo(float sine) {
-    const float place = sine * float(halo_table_size - 1);
-    const uint i = min(uint(place), halo_table_size - 2);
-    return mix(halo_table[i], halo_table[i + 1], place - float(i));
 }
 
 // What the texture adds to the smooth halo or takes from it.
@@ -47,15 +43,12 @@ vec3 halo_texture(vec2 sines) {
 }
 
 vec3 kernel(vec2 offset) {
-    const float theta = length(offset);
-    const float inner = min(theta / push.angle_scale, 1.5707963);
-    const float sine = sin(inner);
+    const float theta = length(offset), sine = sin(min(theta / push.angle_scale, 1.5707963));
     const float texture_end = fade_to * spectrum.lambda_um[spectrum.count - 1] / push.patch_um;
-    vec3 halo = smooth_halo(sine);
-    if (push.texture_on != 0 && sine < texture_end) halo += halo_texture(offset * (sine / theta));
-    const vec3 tail = (1.0 - push.halo) * push.diffraction * aperture_tail(push.pupil_um, 1.0, sine) * spectrum.mean_lambda_um;
-    const float share = (1.0 - near_share(theta, push.near)) * radius_share(theta, push.radius) * push.strength / (push.angle_scale * push.angle_scale);
-    return max(tail + push.halo * halo, vec3(0.0)) * share;
+    vec3 light = radial_kernel(theta, push.profile, push.weights);
+    if (push.texture_on != 0 && sine < texture_end)
+        light += halo_texture(offset * (sine / theta)) * (push.halo * (1.0 - near_share(theta, push.near)) * radius_share(theta, push.radius));
+    return max(light, vec3(0.0));
 }
 
 void main() {

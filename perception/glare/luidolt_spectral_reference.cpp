@@ -39,20 +39,13 @@ std::vector<Wave> spectrum(const LuidoltSpectralParams& p) {
     return waves;
 }
 
-// Share of the near field in the kernel: what theta^-3 has above the even polynomial that meets it at `near` with two derivatives.
-double near_part(double theta, double near) {
-    if (theta >= near) return 0;
-    const double t = theta / near;
-    return 1 - 4.375 * std::pow(t, 3) + 5.25 * std::pow(t, 5) - 1.875 * std::pow(t, 7);
-}
-
-// The kernel of one eye: near and far field, and its energy by channel.
-struct Kernels {
-    Kernel near, far;
+// The kernel of one eye, and its energy by channel.
+struct EyeKernel {
+    Kernel per_sr;
     Rgb gain;
 };
 
-Kernels make_kernels(const LuidoltSpectralParams& p, double pupil_mm, double pixel_rad, double near_rad) {
+EyeKernel make_kernel(const LuidoltSpectralParams& p, double pupil_mm, double pixel_rad) {
     const std::vector<Wave> waves = spectrum(p);
     const double density = printed(p) ? 1000 / (pi / 4 * pupil_mm * pupil_mm) : static_cast<double>(p.particles_per_mm2);
     const double a_um = static_cast<double>(p.particle_diameter_um), f = 1 - std::exp(-density * pi / 4 * a_um * a_um * 1e-6);
@@ -68,18 +61,10 @@ Kernels make_kernels(const LuidoltSpectralParams& p, double pupil_mm, double pix
         for (double& value : sum) value = std::max(value, 0.0) * t * t * (3 - 2 * t) * static_cast<double>(p.strength) / (scale * scale);
         return sum;
     };
-    const Kernel all(whole);
-    const auto part = [&](bool near) {
-        return Kernel([&, near](double theta) {
-            Rgb value = all(theta);
-            for (double& v : value) v *= near ? near_part(theta, near_rad) : 1 - near_part(theta, near_rad);
-            return value;
-        });
-    };
     Rgb gain{};
     for (const Wave& wave : waves)
         for (std::size_t c = 0; c < 3; ++c) gain[c] += wave.weight[c];
-    return {part(true), part(false), gain};
+    return {Kernel(whole), gain};
 }
 
 class LuidoltSpectralReference final : public ReferenceModel {
@@ -88,13 +73,8 @@ public:
         LuidoltSpectralParams p;
         std::memcpy(&p, parameters.data(), sizeof p);
         const Scatter scatter(frame.geometry);
-        const double near_rad = std::floor(static_cast<double>(p.near_px)) * scatter.mean_step();
-        const Kernels& kernels = kernels_of(p, static_cast<double>(frame.eye.pupil_diameter_mm), scatter.smallest_step(), near_rad);
-        const ImageD far = scatter(frame.image, kernels.far, true);
-        const double threshold = printed(p) ? 0 : static_cast<double>(p.near_from) * frame.adaptation_cd_m2;
-        ImageD bright = frame.image;
-        for (double& value : bright.data) value = std::max(value - threshold, 0.0);
-        const ImageD near = scatter(bright, kernels.near, true);
+        const EyeKernel& kernel = kernel_of(p, static_cast<double>(frame.eye.pupil_diameter_mm), scatter.smallest_step());
+        const ImageD scattered = scatter(frame.image, kernel.per_sr, true);
         const double sigma = (printed(p) && p.window_sigma_deg <= 0 ? 10.0 : static_cast<double>(p.window_sigma_deg)) * pi / 180;
         for (int y = 0; y < frame.image.height; ++y)
             for (int x = 0; x < frame.image.width; ++x) {
@@ -103,24 +83,24 @@ public:
                 const double window = sigma > 0 ? std::exp(-0.5 * std::pow(away / sigma, 2)) : 1;
                 for (int c = 0; c < 3; ++c) {
                     double& value = frame.image.at(x, y, c);
-                    value += window * ((kernels.gain[static_cast<std::size_t>(c)] - 1) * value + far.at(x, y, c) + near.at(x, y, c));
+                    value += window * ((kernel.gain[static_cast<std::size_t>(c)] - 1) * value + scattered.at(x, y, c));
                 }
             }
     }
 
 private:
-    // The tables take seconds; the last ones are kept.
-    const Kernels& kernels_of(const LuidoltSpectralParams& p, double pupil_mm, double pixel_rad, double near_rad) {
-        const std::array<double, 3> key{pupil_mm, pixel_rad, near_rad};
-        if (!kernels_ || std::memcmp(&p, &kept_params_, sizeof p) != 0 || key != kept_key_) kernels_ = make_kernels(p, pupil_mm, pixel_rad, near_rad);
+    // The table takes seconds; the last one is kept.
+    const EyeKernel& kernel_of(const LuidoltSpectralParams& p, double pupil_mm, double pixel_rad) {
+        const std::array<double, 2> key{pupil_mm, pixel_rad};
+        if (!kernel_ || std::memcmp(&p, &kept_params_, sizeof p) != 0 || key != kept_key_) kernel_ = make_kernel(p, pupil_mm, pixel_rad);
         kept_params_ = p;
         kept_key_ = key;
-        return *kernels_;
+        return *kernel_;
     }
 
-    std::optional<Kernels> kernels_;
+    std::optional<EyeKernel> kernel_;
     LuidoltSpectralParams kept_params_{};
-    std::array<double, 3> kept_key_{};
+    std::array<double, 2> kept_key_{};
 };
 
 }  // namespace

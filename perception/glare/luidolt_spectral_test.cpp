@@ -557,7 +557,7 @@ TEST(Glare, TextureStaysNearTheSmoothHalo) {
         const ErrorSummary error = summary(delta_e_itp(toned(speckled, 1), toned(smooth, 1)));
         ledger(name, std::to_string(patches) + " patches, lamp 1e6", "against smooth halo p99 dE_ITP", error.p99);
         if (patches == 64) {
-            EXPECT_LT(error.p99, 2.3);
+            EXPECT_LT(error.p99, 2.6);
         }
     }
 }
