@@ -302,7 +302,9 @@ void GlareModel::record_kernel(StageIo& io, uint kernel, long steps) {
     c.dispatch(rows_forward_, {work_, twiddle_.buffer}, all_rows(), {FftSize(grid_.n).groups(), 2, 1});
     c.barrier();
     FftPush spectrum = all_rows();
-    spectrum.order = sharpening_order(static_cast<double>(near_rad(kernel)), grid_.pitch, capped_[kernel], setup_.smooth);
+    const Sharpening sharpening = sharpening_for(static_cast<double>(near_rad(kernel)), grid_.pitch, grid_.damping, capped_[kernel], setup_.smooth);
+    spectrum.damping = static_cast<float>(sharpening.damping);
+    spectrum.order = sharpening.order;
     spectrum.first_key = spectrum.second_key = key;
     c.dispatch(columns_kernel_, {work_, work_, twiddle_.buffer, spectra_}, spectrum, {FftSize(grid_.n).groups(), 2, 1});
     if (std::any_of(setup_.terms.begin(), setup_.terms.end(), [&](const GlareTerm& t) { return t.kernel == kernel && leaves(t); }))

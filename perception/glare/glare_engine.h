@@ -197,7 +197,7 @@ private:
         return {io.width, io.height, grid_.nodes_x, grid_.nodes_y, grid_.step, io.tiles_x, io.tiles_y, near_field() ? 1u : 0u, turn};
     }
     uint row_groups() const { return gpu::groups_for(grid_.rows, FftSize(grid_.n).lines()); }
-    FftPush all_rows() const { return {0, grid_.n, 3, 0, 0, 0, static_cast<float>(grid_.damping), 0}; }
+    FftPush all_rows() const { return {0, grid_.n, 3, 0, 0, 0, 0, 0}; }
     FftPush light_rows() const { return {grid_.first_row, grid_.rows, 3, 0, 0, 0, 0, 0}; }
 
     GlareSetup setup_;

@@ -132,7 +132,7 @@ void choose_patches(std::span<const EyeGeometry> views, double texel_px, uint le
     grid.rows = 2 * static_cast<uint>(std::ceil(rows)) + 1;
     grid.step = 1;
     while (grid.step < 8 && 2 * grid.step * pixel <= grid.pitch * 1.01) grid.step *= 2;
-    grid.damping = 7 + 6 * std::pow(grid.step * pixel / grid.pitch, 2);
+    grid.damping = 6 + 6 * std::pow(grid.step * pixel / grid.pitch, 2);
 }
 
 NodeTap tap_of(const GlareGrid& grid, uint patch_index, glm::dvec3 d, double weight) {

@@ -26,7 +26,7 @@ struct GlareGrid {
     double smallest_step = 0;             // between pixels, rad
     double pixel_rad = 0;                 // mean pixel step, rad: near_px times this is the radius of the near field
     uint step = 1;                        // pixels between nodes: 1, 2, 4 or 8
-    double damping = 13;                  // exponent of sinc that the splines to the grid and back and the mean over a texel make: see sharpening()
+    double damping = 12;                  // exponent of sinc that the splines to the grid and back make: see sharpening()
     uint nodes_x = 0, nodes_y = 0;        // of a view; node n stands on pixel step (n - 1)
     uint first_row = 0, rows = 0;         // rows of the grid that hold light
     uint taps = 1;                        // a node: 1 for one patch a view, 3 for the faces of a sphere

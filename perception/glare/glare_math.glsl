@@ -101,7 +101,7 @@ FN rvec3 spline_weights(real d) {
     return rvec3(LIT(0.5) * (LIT(0.5) - d) * (LIT(0.5) - d), LIT(0.75) - d * d, LIT(0.5) * (LIT(0.5) + d) * (LIT(0.5) + d));
 }
 
-// The splines on the way to the grid and back and the mean over a texel damp a frequency f (cycles a texel) by sinc(f)^damping. This is the
+// The splines on the way to the grid and back, and the mean over a texel, damp a frequency f (cycles a texel) by sinc(f)^damping. This is the
 // inverse of that to the power `order` of s = sin^2(pi f): a kernel sharpened by it comes out as it was meant, and as it spans 2 order + 1 texels it
 // cannot ring farther out. (pi f)^2 / s = sum 2^(2k+1) s^k / ((k+1)^2 C(2k+2, k+1)), the square of the arc sine; its power damping / 2 by
 // J. C. P. Miller's recurrence (Henrici 1956).

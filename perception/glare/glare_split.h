@@ -77,10 +77,16 @@ private:
     std::array<glm::dvec3, 4> coefficients_{};
 };
 
-// How far a kernel is sharpened on a grid of texels `pitch` wide (rad). `smooth`: beyond the near field it has no detail as fine as a texel. What is no
-// such kernel or no wide cap holds frequencies that the grid cannot carry: sharpened in full they would ring.
-constexpr unsigned sharpening_order(double near_rad, double pitch, bool capped, bool smooth) {
-    return capped && smooth && near_rad >= least_cap_texels * pitch ? glare::most_sharpening : 3;
+// How a kernel is sharpened on a grid of texels `pitch` wide (rad), whose splines make sinc(f)^splines: exponent and order of sharpening(). `smooth`: beyond the
+// near field it has no detail as fine as a texel. The mean over a texel is undone, too. What is no such kernel or no wide cap holds frequencies that the
+// grid cannot carry: sharpened in full they would ring.
+struct Sharpening {
+    double damping;
+    unsigned order;
+};
+constexpr Sharpening sharpening_for(double near_rad, double pitch, double splines, bool capped, bool smooth) {
+    if (capped && smooth && near_rad >= least_cap_texels * pitch) return {splines + 1, glare::most_sharpening};
+    return {splines, 3};
 }
 
 }  // namespace entoptic::perception

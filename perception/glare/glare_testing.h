@@ -175,8 +175,8 @@ private:
                 plane[static_cast<std::size_t>((y + 2 * half) % (2 * half) * 2 * half + (x + 2 * half) % (2 * half))] = sum / (n * n);
             }
         fftw(plane, FFTW_FORWARD);
-        const uint order = sharpening_order(within, grid_.pitch, capped, true);
-        const auto sharpened = [&](std::size_t i) { return glare::sharpening(static_cast<double>(i) / grid_.n, grid_.damping, order); };
+        const Sharpening sharpening = sharpening_for(within, grid_.pitch, grid_.damping, capped, true);
+        const auto sharpened = [&](std::size_t i) { return glare::sharpening(static_cast<double>(i) / grid_.n, sharpening.damping, sharpening.order); };
         for (std::size_t i = 0; i < plane.size(); ++i) plane[i] *= sharpened(i % grid_.n) * sharpened(i / grid_.n);
         return plane;
     }
