@@ -215,7 +215,7 @@ TEST(ClosedForm, AnOlderPersonSeesMoreVeilOfThePanelItself) {
 
 // --- three comparisons ---
 
-struct Scene { std::string what; EyeGeometry g; ImageF image; Settings settings; };
+struct Scene { std::string what; EyeGeometry g; ImageF image; Settings settings; double p99 = 1, mean = 0.2; };
 std::vector<Scene> scenes() {
     std::vector<Scene> list;
     const EyeGeometry axis = rectilinear(64, 52, 6.7);
@@ -223,8 +223,8 @@ std::vector<Scene> scenes() {
     list.push_back({"lamp 1e4, 9.6 ppd, white straylight, light eyes", axis, room(64, 52, 1e4f), {"glare.straylight_colour=0", "glare.pigment=1.2"}});
     ImageF window = uniform(64, 52, 1);
     fill(window, 20, 20, 24, 20, 60, 90, 120);
-    list.push_back({"cataract beside a normal wearer, window within the panel's white", axis, window, {"glare.straylight_factor=4", "glare.wearer_straylight_factor=1"}});
-    list.push_back({"window 2e3, 100 degrees", rectilinear(64, 68, 100), room(64, 68, 2e3f, 6), {}});
+    list.push_back({"cataract beside a normal wearer, window within the panel's white", axis, window, {"glare.straylight_factor=4", "glare.wearer_straylight_factor=1"}, 12, 1.5});
+    list.push_back({"window 2e3, 100 degrees", rectilinear(64, 68, 100), room(64, 68, 2e3f, 6), {}, 6, 0.3});
     list.push_back({"photographic, 9.6 ppd", axis, room(64, 52, 1e4f), {"glare.photographic=1", "glare.near_from=0"}});
     const struct { const char* what; float rgb[3]; } lamps[] = {{"red", {1, 0, 0}}, {"green", {0, 1, 0}}, {"blue", {0, 0, 1}}};
     for (const auto& lamp : lamps) {
@@ -245,9 +245,10 @@ TEST(ClosedForm, GpuAgreesWithTheReference) {
         ledger(name, scene.what, "GPU against reference p99 dE_ITP", display.p99);
         ledger(name, scene.what, "GPU against reference mean dE_ITP", display.mean);
         EXPECT_LT(light.mean, 0.05) << scene.what;
-        // The displayed light has no near field: within two pixels of an edge a cataract's own haze is missing.
-        EXPECT_LT(display.p99, 12.0) << scene.what;
-        EXPECT_LT(display.mean, 1.5) << scene.what;
+        // Elsewhere it cannot be seen. The displayed light has no near field: within two pixels of an edge a cataract's own haze is missing. Of 100 degrees in 64
+        // pixels the near field is narrower than the grid can carry.
+        EXPECT_LT(display.p99, scene.p99) << scene.what;
+        EXPECT_LT(display.mean, scene.mean) << scene.what;
     }
 }
 

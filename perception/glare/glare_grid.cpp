@@ -85,31 +85,43 @@ ViewField field_of(const EyeGeometry& g, uint view) {
     return field;
 }
 
-// A sphere: patches about the six axes. Light is taken up to 85 degrees from an axis, fading from 70 on so that a source that moves out of a
-// patch does not vanish at a step; a node takes its veil from the faces near it, blended.
-constexpr double sphere_reach = 85 * pi / 180, sphere_full = 70 * pi / 180;
-const glm::dvec3 sphere_axes[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+// A sphere: patches about the middles of a cube's faces, edges and corners. Light is shared out among the patches whose axes are near it, where directions
+// are as far from each other on the plane as they are on the sphere, and veils a whole patch: all directions nearer to the axis than sphere_reach.
+// Kernels end at 110 degrees, which is as far as a source may be from what it veils; the plane repeats after sphere_period, so that a source does not
+// veil what lies behind it the long way round.
+constexpr double sphere_source = 30 * pi / 180, sphere_reach = 140 * pi / 180, sphere_period = 280 * pi / 180;
+constexpr uint sphere_patches = 26;
+// Texels are not wider than this, or a pixel: those of a small panorama are coarse enough.
+constexpr double sphere_texel = 0.5 * pi / 180;
+std::vector<glm::dvec3> sphere_axes() {
+    std::vector<glm::dvec3> axes;
+    for (int i = 0; i < 27; ++i)
+        if (i != 13) axes.push_back(glm::normalize(glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+    return axes;
+}
 
 double smooth(double t) {
     t = std::clamp(t, 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
+// Share of a patch in the light from a direction, before the sum over all is set to 1; none beyond sphere_source.
 double source_share(const GlarePatch& patch, glm::dvec3 d) {
-    const double theta = std::acos(std::clamp(glm::dot(patch.forward, d), -1.0, 1.0));
-    return smooth((sphere_reach - theta) / (sphere_reach - sphere_full));
+    const double edge = std::cos(sphere_source);
+    return smooth((glm::dot(patch.forward, d) - edge) / (1 - edge));
 }
-// 1/sqrt(3) = 0.577 at a cube's corner; below 0.5 a face has no say.
-double face_share(const GlarePatch& patch, glm::dvec3 d) { return smooth((glm::dot(patch.forward, d) - 0.5) / 0.35); }
+// Of a patch in the veil towards a direction: 1, and 0 where no source of its reaches and the plane is torn.
+double veil_share(const GlarePatch& patch, glm::dvec3 d) { return glm::dot(patch.forward, d) > std::cos(sphere_reach) ? 1 : 0; }
 
 void choose_patches(std::span<const EyeGeometry> views, double texel_px, uint least_texels, GlareGrid& grid) {
-    double reach_x = 0, reach_y = 0, pixel = 0;
+    double reach_x = 0, reach_y = 0, pixel = 0, period = 0;
     grid.smallest_step = 1;
     for (uint view = 0; view < views.size(); ++view) {
         const EyeGeometry& g = views[view];
         if (g.kind == geometry_equirect) {
-            for (const glm::dvec3& axis : sphere_axes) grid.patches.push_back(patch_towards(view, axis));
-            grid.taps = 3;
+            for (const glm::dvec3& axis : sphere_axes()) grid.patches.push_back(patch_towards(view, axis));
+            grid.taps = sphere_patches;
             reach_x = reach_y = sphere_reach;
+            period = sphere_period;
             pixel = std::max(pixel, pi / g.height);
             grid.smallest_step = std::min(grid.smallest_step, pi / g.height);
             continue;
@@ -122,7 +134,11 @@ void choose_patches(std::span<const EyeGeometry> views, double texel_px, uint le
         grid.smallest_step = std::min(grid.smallest_step, field.smallest_step);
     }
     grid.pixel_rad = pixel;
-    const double texels = 2 * std::max(reach_x, reach_y) / (glare_occupied * texel_px * pixel);
+    if (period == 0)
+        period = 2 * std::max(reach_x, reach_y) / glare_occupied;
+    else
+        texel_px = std::clamp(sphere_texel / pixel, 1.0, texel_px);
+    const double texels = period / (texel_px * pixel);
     grid.n = least_texels;
     while (grid.n < glare_n && grid.n * most_widened < texels) grid.n *= 2;
     grid.pitch = texel_px * pixel * std::max(texels / grid.n, 1.0);
@@ -170,17 +186,6 @@ void sort_splats(const std::vector<PendingEntry>& pending, GlareGrid& grid) {
     for (const PendingEntry& p : pending) grid.splat_entries[next[p.texel]++] = p.entry;
 }
 
-// Taps by which a node of a sphere reads its veil: the nearest three faces, weights of sum 1.
-void sphere_taps(const GlareGrid& grid, uint first_patch, glm::dvec3 d, NodeTap (&taps)[3]) {
-    double shares[6], sum = 0;
-    for (uint f = 0; f < 6; ++f) sum += shares[f] = face_share(grid.patches[first_patch + f], d);
-    for (NodeTap& tap : taps) {
-        const uint best = static_cast<uint>(std::max_element(shares, shares + 6) - shares);
-        tap = tap_of(grid, first_patch + best, d, shares[best] / sum);
-        shares[best] = 0;
-    }
-}
-
 void place_nodes(std::span<const EyeGeometry> views, GlareGrid& grid) {
     grid.nodes_x = (views[0].width - 1 + grid.step / 2) / grid.step + 3;
     grid.nodes_y = (views[0].height - 1 + grid.step / 2) / grid.step + 3;
@@ -188,21 +193,23 @@ void place_nodes(std::span<const EyeGeometry> views, GlareGrid& grid) {
     uint first_patch = 0;
     for (uint view = 0; view < views.size(); ++view) {
         const EyeGeometry& g = views[view];
-        const uint patches = g.kind == geometry_equirect ? 6 : 1;
+        const uint patches = g.kind == geometry_equirect ? sphere_patches : 1;
         for (uint i = 0; i < grid.nodes_x * grid.nodes_y; ++i) {
             const double x = (static_cast<double>(i % grid.nodes_x) - 1) * grid.step + 0.5,
                          y = (static_cast<double>(i / grid.nodes_x) - 1) * grid.step + 0.5;
             const glm::dvec3 d = direction_at(g, x, y);
             const uint node = view * grid.nodes_x * grid.nodes_y + i;
-            NodeTap taps[3] = {};
-            if (patches == 6)
-                sphere_taps(grid, first_patch, d, taps);
-            else
-                taps[0] = tap_of(grid, first_patch, d, 1);
-            grid.node_taps.insert(grid.node_taps.end(), taps, taps + grid.taps);
+            if (patches == 1) {
+                grid.node_taps.push_back(tap_of(grid, first_patch, d, 1));
+                add_splat(grid.node_taps.back(), node, pending);
+                grid.node_taps.resize(grid.node_taps.size() + grid.taps - 1);
+                continue;
+            }
+            double shares[sphere_patches], sum = 0;
+            for (uint f = 0; f < patches; ++f) sum += shares[f] = source_share(grid.patches[first_patch + f], d);
             for (uint f = 0; f < patches; ++f) {
-                const double share = patches == 6 ? source_share(grid.patches[first_patch + f], d) : 1;
-                if (share > 0) add_splat(tap_of(grid, first_patch + f, d, share), node, pending);
+                grid.node_taps.push_back(tap_of(grid, first_patch + f, d, veil_share(grid.patches[first_patch + f], d)));
+                if (shares[f] > 0) add_splat(tap_of(grid, first_patch + f, d, shares[f] / sum), node, pending);
             }
         }
         first_patch += patches;

@@ -29,7 +29,7 @@ struct GlareGrid {
     double damping = 12;                  // exponent of sinc that the splines to the grid and back make: see sharpening()
     uint nodes_x = 0, nodes_y = 0;        // of a view; node n stands on pixel step (n - 1)
     uint first_row = 0, rows = 0;         // rows of the grid that hold light
-    uint taps = 1;                        // a node: 1 for one patch a view, 3 for the faces of a sphere
+    uint taps = 1;                        // a node: 1 for one patch a view, 26 for those of a sphere
     std::vector<GlarePatch> patches;
     std::vector<NodeTap> node_taps;       // view, node, tap
     std::vector<uint> splat_offsets;      // patch, row, column, and one more at the end
