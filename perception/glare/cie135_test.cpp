@@ -88,9 +88,9 @@ TEST(Cie135, VeilOfAPanoramaIsThatOfTheReference) {
         const ErrorSummary light = summary(relative_errors(gpu, reference(in, sphere, {}), 1));
         ledger(name, std::string("panorama, lamp ") + lamp.what, "GPU against reference p99", light.p99);
         ledger(name, std::string("panorama, lamp ") + lamp.what, "GPU against reference mean", light.mean);
-        EXPECT_LT(light.mean, 0.02) << lamp.what;
+        EXPECT_LT(light.mean, 0.03) << lamp.what;
         // Over a pole one kernel a tile of pixels does not fit.
-        EXPECT_LT(light.p99, lamp.y < 4 ? 0.5 : 0.1) << lamp.what;
+        EXPECT_LT(light.p99, lamp.y < 4 ? 0.5 : 0.2) << lamp.what;
     }
 }
 
