@@ -46,15 +46,19 @@ vec3 kernel(vec2 offset, float width, uint zone) {
     return sum * (push.strength * near_share(length(offset), push.near));
 }
 
+// Of the axes that the grid's patches of a sphere have, through the middles of a cube's faces, edges and corners, the one nearest to a direction.
+vec3 nearest_axis(vec3 direction) {
+    vec3 nearest = vec3(0.0, 0.0, -1.0);
+    for (int i = 0; i < 27; ++i) {
+        const vec3 axis = vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (i != 13 && dot(normalize(axis), direction) > dot(nearest, direction)) nearest = normalize(axis);
+    }
+    return nearest;
+}
+
 // Steps of one pixel to the side and down as offsets on the glare grid: right and down, rad.
 mat2 pixel_steps(EyeGeometry g, vec3 middle, vec3 across, vec3 down) {
-    vec3 forward = vec3(0.0, 0.0, -1.0);
-    if (g.kind == geometry_equirect) {  // the face of the cube that the grid has there
-        const vec3 size = abs(middle);
-        forward = size.x > max(size.y, size.z) ? vec3(sign(middle.x), 0.0, 0.0)
-                  : size.y > size.z            ? vec3(0.0, sign(middle.y), 0.0)
-                                               : vec3(0.0, 0.0, sign(middle.z));
-    }
+    const vec3 forward = g.kind == geometry_equirect ? nearest_axis(middle) : vec3(0.0, 0.0, -1.0);
     const vec3 helper = abs(forward.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, -1.0), right = normalize(cross(forward, helper));
     const vec3 up = cross(right, forward);
     return mat2(grid_offset(right, up, forward, 1.0, middle + 0.5 * across) - grid_offset(right, up, forward, 1.0, middle - 0.5 * across),
