@@ -40,7 +40,7 @@ constexpr ParameterInfo parameters[] = {
     {"pupil_step_mm", "mm", 0.05f, 1, 0.25f, "choice: a streak's length goes with lambda / D", "distance of the pupil diameters at which kernels are built"},
     {"lid_steps", "1", 2, 64, 16, "choice: 0.6 mm of opening", "openings of the lids at which kernels are built"},
     {"texel_px", "px", 1, 16, 4, "choice: p99 dE_ITP 0.3 on a whole picture", "least width of a texel of the grid on which far light is computed"},
-    {"near_px", "px", 0, max_mask_near_px, 12, "choice: streaks are a pixel wide only in the near field", "radius of the near field, done at full resolution"},
+    {"near_px", "px", 0, max_near_px, 12, "choice: streaks are a pixel wide only in the near field", "radius of the near field, done at full resolution"},
     {"billboard_texels", "1", 0, 256, 40, "choice: about 50 sources cost one transform", "up to so many lit texels the kernel is drawn at each; 0: always by transforms"},
     {"sigmoid", "bool", 0, 1, 0, "Kakimoto 2004, eq. 7; trap K3", "1: the veil is laid over the picture through the paper's tone curve"},
     {"photographic", "bool", 0, 1, 0, "choice: the residual law", "1: all light of the scene is diffracted; 0: only what the panel cannot show"},

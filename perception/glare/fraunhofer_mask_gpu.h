@@ -8,8 +8,6 @@
 namespace entoptic::perception {
 #endif
 
-const uint max_mask_near_px = 24;  // reach of the near field where pixels are small; three tiles high, less than one wide
-
 struct MaskKernelPush {
     float pitch, near;             // rad
     float strength;

@@ -13,8 +13,8 @@
 #include "shaders/scene_statistics.h"
 
 layout(local_size_x = 32, local_size_y = 8) in;
-const uint most_weights = ((2 * max_mask_near_px + 1) * (2 * max_mask_near_px + 1) + 1) / 2;
-const uint reach_width = tile_width + 2 * max_mask_near_px;
+const uint most_weights = ((2 * max_near_px + 1) * (2 * max_near_px + 1) + 1) / 2;
+const uint reach_width = tile_width + 2 * max_near_px;
 const float absent = -1.0;
 
 layout(scalar, binding = 0) readonly buffer Scene { vec4 scene[]; };
@@ -162,7 +162,7 @@ void main() {
         const vec2 middle = min(vec2(corner) + vec2(tile_width, tile_height) * 0.5, vec2(push.width, push.height) - 0.5);
         const vec3 across = (geometry_direction(g, middle + vec2(2, 0)) - geometry_direction(g, middle - vec2(2, 0))) * 0.25;
         const vec3 down = (geometry_direction(g, middle + vec2(0, 2)) - geometry_direction(g, middle - vec2(0, 2))) * 0.25;
-        const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_mask_near_px)));
+        const int radius = int(clamp(ceil(push.near / max(min(length(across), length(down)), 1e-6)), 1.0, float(max_near_px)));
         const uint base = view * push.width * push.height;
         const float threshold = push.near_from < 0.0 ? state[view].tone.scene_white_cd_m2 : push.near_from * state[view].adaptation_cd_m2;
         const uvec2 px = corner + gl_LocalInvocationID.xy;
