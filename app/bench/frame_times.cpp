@@ -87,29 +87,45 @@ private:
     SubImage image_;
 };
 
+// Of each stage of the last frame, over all frames but those in which pipelines are compiled.
+std::vector<std::pair<std::string, double>> stage_medians(const std::vector<std::vector<StageMs>>& frames) {
+    std::vector<std::pair<std::string, double>> medians;
+    for (const StageMs& stage : frames.back()) {
+        std::vector<double> times;
+        for (std::size_t i = std::min<std::size_t>(2, frames.size() - 1); i < frames.size(); ++i)
+            for (const StageMs& other : frames[i])
+                if (other.name == stage.name) times.push_back(other.ms);
+        medians.emplace_back(stage.name, percentiles(std::move(times)).median);
+    }
+    return medians;
+}
+
 class FrameBench {
 public:
     FrameBench(gpu::Device& device, const Headset& headset, const EffectBenchOptions& options)
         : device_(device), headset_(headset), o_(options), pool_(device) {}
 
-    Result<double> median_ms(const std::string& preset, const ImageF& scene) {
+    Result<FrameTime> medians(const std::string& preset, const ImageF& scene, bool fuse = true) {
         ENTOPTIC_TRY(selection, perception::select(preset));
         FramePathOptions options;
         options.panel = {static_cast<std::uint32_t>(headset_.display.panel_width),
                          static_cast<std::uint32_t>(headset_.display.panel_height)};
         options.eyes = headset_.eyes;
         options.selection = selection;
+        options.fuse = fuse;
         ENTOPTIC_TRY(path, FramePath::create(device_, options));
         Picture picture(device_, pool_);
         ENTOPTIC_CHECK(picture.fill(scene));
         const std::vector<Layer> layers{picture.layer(headset_.eyes)};
+        std::vector<std::vector<StageMs>> stages;
         ENTOPTIC_TRY(times, timed_frames(o_.frames, 2 * o_.seconds, [&](std::uint64_t index) -> Result<double> {
                          ENTOPTIC_TRY(outcome, path->compose(frame(layers, index), pool_.use(layers)));
+                         stages.push_back(outcome.gpu_ms);
                          double ms = 0;
                          for (const StageMs& stage : outcome.gpu_ms) ms += stage.ms;
                          return ms;
                      }));
-        return times.median;
+        return FrameTime{preset, times.median, stage_medians(stages)};
     }
 
 private:
@@ -140,18 +156,31 @@ Result<FrameTimes> frame_times(gpu::Device& device, const EffectBenchOptions& op
     ENTOPTIC_TRY(headset, drivers::open_headset(wanted));
     FrameBench bench(device, headset, options);
     const ImageF scene = bench_scene(options.width, options.height);
-    const std::size_t total = perception::presets().size() + 1;  // and the default preset with nothing to see
+    const std::size_t total = perception::presets().size() + 2;  // and `off` in stages, and the default preset with nothing to see
     std::size_t done = 0;
+    const auto measure = [&](const std::string& preset, const ImageF& image, bool fuse = true) {
+        auto time = bench.medians(preset, image, fuse);
+        if (options.progress) options.progress(++done, total);
+        return time;
+    };
     FrameTimes times;
     for (const perception::Preset& preset : perception::presets()) {
-        ENTOPTIC_TRY(ms, bench.median_ms(std::string(preset.name), scene));
-        (preset.name == "off" ? times.off_ms : times.preset_ms[std::string(preset.name)]) = ms;
-        if (options.progress) options.progress(++done, total);
+        ENTOPTIC_TRY(time, measure(std::string(preset.name), scene));
+        if (preset.name == "off") times.off = time;
+        else times.presets.push_back(time);
     }
-    ENTOPTIC_TRY(idle, bench.median_ms(std::string(perception::default_preset), ImageF(options.width, options.height, 3, 20.0f)));
-    times.idle_ms = idle;
-    if (options.progress) options.progress(++done, total);
+    ENTOPTIC_TRY(in_stages, measure("off", scene, false));
+    times.off_in_stages = in_stages;
+    ENTOPTIC_TRY(idle, measure(std::string(perception::default_preset), ImageF(options.width, options.height, 3, 20.0f)));
+    times.idle = idle;
     return times;
+}
+
+double FrameTime::stage_ms(const std::string& name) const {
+    double sum = 0;
+    for (const auto& [stage, ms] : stages_ms)
+        if (stage == name || stage.starts_with(name + ".")) sum += ms;
+    return sum;
 }
 
 }  // namespace entoptic::app

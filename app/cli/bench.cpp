@@ -25,7 +25,7 @@ struct Options {
     int frames = 30;
     bool quick = false, json = false, progress = false;
 };
-constexpr std::string_view foveation = "foveation", storage = "storage";  // beside the slots, for --only
+constexpr std::string_view foveation = "foveation", storage = "storage", whole_frames = "frames";  // beside the slots, for --only
 constexpr int quick_frames = 8;
 constexpr double row_seconds = 1, quick_row_seconds = 0.3;  // of timed frames
 
@@ -60,9 +60,23 @@ Json bench_json(const gpu::Device& device, const Options& o, const Measured& mea
                   {"preset", o.preset},
                   {"rows", list}};
     if (!measured.frame) return document;
-    Json presets = Json::object();
-    for (const auto& [name, ms] : measured.frame->preset_ms) presets[name] = ms;
-    document["frame"] = {{"off_ms", measured.frame->off_ms}, {"preset_ms", presets}, {"idle_ms", measured.frame->idle_ms}};
+    const FrameTimes& frame = *measured.frame;
+    Json presets = Json::object(), stages = Json::object();
+    const auto stages_of = [](const FrameTime& time) {
+        Json by_name = Json::object();
+        for (const auto& [name, ms] : time.stages_ms) by_name[name] = ms;
+        return by_name;
+    };
+    for (const FrameTime& time : frame.presets) {
+        presets[time.preset] = time.total_ms;
+        stages[time.preset] = stages_of(time);
+    }
+    stages["off"] = stages_of(frame.off);
+    stages["off_in_stages"] = stages_of(frame.off_in_stages);
+    stages["idle"] = stages_of(frame.idle);
+    document["frame"] = {{"off_ms", frame.off.total_ms},   {"off_in_stages_ms", frame.off_in_stages.total_ms},
+                         {"preset_ms", presets},           {"idle_ms", frame.idle.total_ms},
+                         {"stages_ms", stages}};
     return document;
 }
 
@@ -78,13 +92,31 @@ void print_rows(const std::vector<EffectRow>& rows) {
         "   (p99 dE_ITP at most 1, mean at most 0.2)\n");
 }
 
+// A frame's time, and what share of perception's each slot has.
+void print_frame(const std::string& what, const FrameTime& time) {
+    const double perceive = time.stage_ms("perceive"), optics = time.stage_ms("warp") + time.stage_ms("lens");
+    fmt::print("{:<34} {:>9.2f}", what, time.total_ms);
+    if (optics > 0) fmt::print(" {:>9.2f} {:>9.2f} {:>9.2f}", time.stage_ms("warp"), time.stage_ms("lens"), perceive);
+    if (optics > 0 && perceive > 0) fmt::print(" {:>9.2f}", perceive / optics);
+    for (const auto& [stage, ms] : time.stages_ms)
+        if (perceive > 0 && stage.starts_with("perceive.") && ms >= 0.01 * perceive)
+            fmt::print("  {} {:.0f} %", stage.substr(std::string_view("perceive.").size()), 100 * ms / perceive);
+    fmt::print("\n");
+}
+
+void print_frames(const FrameTimes& frames) {
+    fmt::print("\n{:<34} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "whole frame, both eyes, median ms", "total", "warp", "lens", "perceive", "ratio");
+    print_frame("off, one pass", frames.off);
+    print_frame("off, in stages", frames.off_in_stages);
+    print_frame(frames.idle.preset + ", nothing to see", frames.idle);
+    for (const FrameTime& time : frames.presets) print_frame(time.preset, time);
+    fmt::print("ratio: perceive over warp and lens; then the shares of perceive that are 1 % or more\n");
+}
+
 void print_table(const gpu::Device& device, const Options& o, const Measured& measured) {
     fmt::print("{} ({}), {} an eye\n\n", device.name(), device.driver(), o.size);
-    print_rows(measured.rows);
-    if (!measured.frame) return;
-    fmt::print("\nWhole frame, both eyes: off {:.2f} ms, nothing to see {:.2f} ms", measured.frame->off_ms, measured.frame->idle_ms);
-    for (const auto& [name, ms] : measured.frame->preset_ms) fmt::print(", {} {:.2f} ms", name, ms);
-    fmt::print("\n");
+    if (!measured.rows.empty()) print_rows(measured.rows);
+    if (measured.frame) print_frames(*measured.frame);
 }
 
 // What a plot's errors are taken against.
@@ -132,11 +164,11 @@ Result<EffectBenchOptions> effect_options(const Options& o) {
     const std::size_t equals = o.only.find('=');
     options.slot = o.only.substr(0, equals);
     options.model = equals == std::string::npos ? "" : o.only.substr(equals + 1);
-    if ((options.slot == foveation || options.slot == storage) && options.model.empty()) return options;
+    if ((options.slot == foveation || options.slot == storage || options.slot == whole_frames) && options.model.empty()) return options;
     const auto slots = perception::slots();
     if (std::find(slots.begin(), slots.end(), options.slot) == slots.end())
-        return usage_error(fmt::format("--only {}: there is no slot '{}'. Slots: {}, {}, {}.", o.only, options.slot, fmt::join(slots, ", "),
-                                       foveation, storage));
+        return usage_error(fmt::format("--only {}: there is no slot '{}'. Slots: {}, {}, {}, {}.", o.only, options.slot, fmt::join(slots, ", "),
+                                       foveation, storage, whole_frames));
     // Names the models there are.
     if (!options.model.empty()) ENTOPTIC_CHECK(perception::select(o.preset, {o.only}));
     return options;
@@ -155,10 +187,11 @@ Result<Measured> measure(gpu::Device& device, const Options& o, EffectBenchOptio
         return {};
     };
     const bool all = options.slot.empty();
-    ENTOPTIC_CHECK(add(all || (options.slot != foveation && options.slot != storage), "models and settings", &effect_rows));
+    const bool beside = options.slot == foveation || options.slot == storage || options.slot == whole_frames;
+    ENTOPTIC_CHECK(add(all || !beside, "models and settings", &effect_rows));
     ENTOPTIC_CHECK(add(all || options.slot == foveation, "foveated images", &foveation_rows));
     ENTOPTIC_CHECK(add(all || options.slot == storage, "storage formats", &storage_rows));
-    if (!all) return measured;
+    if (!all && options.slot != whole_frames) return measured;
     Progress progress("whole frames", o.progress);
     options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
     ENTOPTIC_TRY(frame, frame_times(device, options));
@@ -194,7 +227,7 @@ void add_bench(CLI::App& app, Action& action) {
                            "references: on two idle cores half of\n"
                            "that. Other programs that run meanwhile make it longer, and the times worse");
     c->add_flag("--quick", o->quick, "Only the models of the preset, and fewer frames");
-    c->add_option("--only", o->only, "SLOT, SLOT=MODEL, foveation or storage: nothing else is measured");
+    c->add_option("--only", o->only, "SLOT, SLOT=MODEL, foveation, storage or frames: nothing else is measured");
     c->add_flag("--json", o->json, "One JSON document on standard output");
     c->add_option("--plot", o->plot, "Folder to draw speed_error.svg, speed_error_SLOT.svg and speed_error_SLOT_MODEL.svg into");
     c->add_option("--size", o->size, "Pixels of one eye");
