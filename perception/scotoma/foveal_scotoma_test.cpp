@@ -129,7 +129,7 @@ TEST(FovealScotoma, GateHoldsBothWays) {
 
 TEST(FovealScotoma, MirroredStaysMirrored) { laws.mirrored_stays_mirrored(8, 1e-3, 1000, 3e-4); }
 TEST(FovealScotoma, HardCasesStayFinite) {
-    laws.hard_cases_stay_finite({"scotoma.photographic=0", "scotoma.photographic=1", "scotoma.inner_deg=5"});
+    laws.hard_cases_stay_finite({"scotoma.photographic=0", "scotoma.photographic=1", "scotoma.inner_deg=1.5"});
 }
 
 }  // namespace
