@@ -413,8 +413,11 @@ Result<void> GlareModel::record(StageIo& io) {
     for (const GlareTerm& term : setup_.terms)
         if (term.source == source_drawn) {
             io.commands.barrier();
-            if (term.near && near_field()) record_near_drawn(io, term, choice);
             record_far(io, term, choice, false);
+            if (term.near && near_field()) {
+                record_near_drawn(io, term, choice);
+                io.commands.barrier();
+            }
             record_apply(io, apply_drawn_);
         }
     return {};
