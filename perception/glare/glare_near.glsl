@@ -154,7 +154,7 @@ void near_tiles() {
                 barrier();
             }
             const int first_row = row - int(gl_LocalInvocationID.y);
-            if (wanted) sum += own != vec3(0.0) ? exchanged_with_band(first_row, radius, own) : from_band(first_row, radius);
+            if (wanted) sum += all_bands ? exchanged_with_band(first_row, radius, own) : from_band(first_row, radius);
         }
         if (!inside) continue;
         if (have_weights) sum *= gaze_window(push.gaze[min(view, 1u)], geometry_direction(g, middle), push.window_sigma);
